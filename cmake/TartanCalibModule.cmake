@@ -1,0 +1,62 @@
+# A module is a folder: include/tartan_calib/<name>, src/<name>, test/<name>, one static library tartan_calib_<name>
+# and, where test/<name> holds *_test.cpp files, one test executable <name>_test.
+
+set(TARTAN_CALIB_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+  # False positives on Eigen's fixed-size expressions, inlined into our code where SYSTEM does not reach them.
+  list(APPEND TARTAN_CALIB_WARNINGS -Wno-array-bounds -Wno-stringop-overread -Wno-maybe-uninitialized)
+endif()
+if(TARTAN_CALIB_WERROR)
+  list(APPEND TARTAN_CALIB_WARNINGS -Werror)
+endif()
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# tartan_calib_module(<name> [USES <module>...] [LINK <library>...] [INCLUDE <third-party include dir>...])
+function(tartan_calib_module name)
+  cmake_parse_arguments(ARG "" "" "USES;LINK;INCLUDE" ${ARGN})
+  set(target tartan_calib_${name})
+  set(used)
+  foreach(module ${ARG_USES})
+    list(APPEND used tartan_calib_${module})
+  endforeach()
+
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_compile_options(${target} PRIVATE ${TARTAN_CALIB_WARNINGS})
+    set(scope PUBLIC)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR}/include)
+  target_include_directories(${target} SYSTEM ${scope} ${ARG_INCLUDE})
+  target_link_libraries(${target} ${scope} ${used} ${ARG_LINK})
+
+  if(TARTAN_CALIB_BUILD_TESTS)
+    tartan_calib_tests(${name} ${target})
+  endif()
+endfunction()
+
+# tartan_calib_tests(<name> <library>...): one executable from test/<name>/*_test.cpp, its cases known to ctest one by one.
+function(tartan_calib_tests name)
+  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/${name}/*_test.cpp)
+  if(NOT tests)
+    return()
+  endif()
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+  add_executable(${name}_test ${tests})
+  target_compile_options(${name}_test PRIVATE ${TARTAN_CALIB_WARNINGS})
+  target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/test)
+  target_link_libraries(${name}_test PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
+endfunction()
