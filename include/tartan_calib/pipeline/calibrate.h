@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tartan_calib/calibration/initialize.h"
+#include "tartan_calib/calibration/rig.h"
+#include "tartan_calib/calibration/solve.h"
+#include "tartan_calib/calibration/statistics.h"
+#include "tartan_calib/detection/target_detector.h"
+#include "tartan_calib/error.h"
+#include "tartan_calib/observation/observation.h"
+#include "tartan_calib/pipeline/camera_stream.h"
+#include "tartan_calib/target/target.h"
+
+namespace tartan_calib::pipeline {
+
+/// Everything that can be chosen about a run, with Kalibr's defaults where Kalibr has the choice.
+struct CalibrateOptions {
+  std::vector<std::string> models;            ///< one name per camera, e.g. ds-none
+  std::optional<double> focal_hint_px;        ///< image scale in the centre of every camera
+  std::optional<calibration::Rig> known_rig;  ///< start from this calibration, camera by camera
+  detection::DetectorOptions detector;        ///< Kalibr's filters
+  std::optional<int> min_tags;                ///< AprilGrid: images with fewer stay out of the solve; default minTags()
+  std::int64_t approx_sync_ns = 20'000'000;   ///< largest distance of an image's stamp from its view's
+  int num_threads = 0;                        ///< of every stage (replaces solve.num_threads); 0: all cores
+  calibration::SolveOptions solve;
+};
+
+/// Kalibr's smallest number of tags in an image that takes part: max(rows, cols) + 1, but never more than the board has.
+int minTags(const target::AprilGrid& grid);
+
+/// Distinct tags of which at least one corner was seen.
+int countTags(const target::AprilGrid& grid, const std::vector<observation::Corner>& corners);
+
+/// What one camera saw: the arrow between detection and calibration, which a corners file stores.
+struct CameraCorners {
+  std::string topic;
+  int width = 0;
+  int height = 0;
+  std::vector<observation::CameraView> images;  ///< those with corners, by increasing stamp
+  std::size_t num_images = 0;                   ///< all that were looked at
+  std::size_t num_other_size = 0;               ///< skipped: not of the size that most images have
+  std::size_t num_unreadable = 0;               ///< skipped: could not be decoded
+  std::string unreadable_reason;                ///< of the first one
+  detection::DetectionCounts counts;            ///< summed over the images
+};
+
+enum class Stage { kDetect, kStartCamera, kStartRig, kSolve, kStatistics };
+
+/// `detect`, `start camera`, ...
+std::string stageName(Stage stage);
+
+struct Progress {
+  Stage stage = Stage::kDetect;
+  int camera_index = -1;  ///< -1 where the stage is about all cameras
+  std::size_t done = 0;   ///< images or, in other stages, 0 at the beginning and 1 at the end
+  std::size_t total = 0;
+};
+
+/// Told what happens while it happens, always on the thread that called. Any member may stay empty.
+struct Listener {
+  std::function<void(const Progress&)> progress;
+  std::function<void(int camera_index, const CameraCorners&)> camera_detected;
+  std::function<void(int camera_index, const camera::Camera&)> camera_started;
+  std::function<void(const calibration::Problem&)> rig_started;
+  std::function<void(const std::string&)> warning;  ///< the same texts are in CalibrationResult::warnings
+  std::function<bool()> is_cancelled;               ///< asked at least once per image and stage
+};
+
+/// The listener asked to stop.
+class Cancelled : public Error {
+ public:
+  using Error::Error;
+};
+
+/// What is known about one camera besides its calibration.
+struct CameraReport {
+  std::string topic;
+  std::size_t num_images = 0;           ///< looked at
+  std::size_t num_images_detected = 0;  ///< with at least one corner
+  std::size_t num_images_used = 0;      ///< in the solve
+  std::size_t num_other_size = 0;
+  std::size_t num_unreadable = 0;
+  detection::DetectionCounts counts;
+  calibration::CameraStatistics statistics;
+};
+
+struct StageTime {
+  Stage stage = Stage::kDetect;
+  int camera_index = -1;
+  double seconds = 0.0;  ///< wall time
+};
+
+/// A calibration and everything that files, terminal and report tell about it.
+struct CalibrationResult {
+  target::Target target;
+  std::vector<CameraReport> cameras;
+  calibration::Solution solution;  ///< rig, and the views that took part with their poses
+  /// Seen, but out of the solve (too few tags, or no pose explains them), by camera, then stamp; Corner::used is false.
+  std::vector<observation::CameraView> unused_images;
+  calibration::CameraGraph graph;  ///< of all synchronised views
+  std::vector<std::string> warnings;
+  std::vector<StageTime> times;  ///< in the order in which the stages ended
+};
+
+/// Corners of all images of one camera, detected on options.num_threads threads. Images are streamed: only a few per thread
+/// exist at a time. The result does not depend on the number of threads.
+CameraCorners detectCorners(const CameraStream& stream, int camera_index, const target::Target& target,
+                            const CalibrateOptions& options, const Listener& listener = {});
+
+/// Images to calibration. Throws InputError for options that do not fit the streams, CalibrationError where the images do
+/// not determine a result, Cancelled where the listener stopped it.
+CalibrationResult calibrate(const std::vector<CameraStream>& streams, const target::Target& target,
+                            const CalibrateOptions& options, const Listener& listener = {});
+
+/// The same from corners. Corner::used of the input is not looked at.
+CalibrationResult calibrateCorners(const std::vector<CameraCorners>& cameras, const target::Target& target,
+                                   const CalibrateOptions& options, const Listener& listener = {});
+
+}  // namespace tartan_calib::pipeline
