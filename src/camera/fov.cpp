@@ -1,7 +1,5 @@
 #include "tartan_calib/camera/fov.h"
 
-#include <algorithm>
-
 namespace tartan_calib::camera {
 namespace {
 
@@ -13,13 +11,14 @@ constexpr double kMinSine = 1e-6;
 bool FovShape::project(const Eigen::Vector3d& p, Eigen::Vector2d& m, Matrix23d* J_m_p,
                        Eigen::Matrix<double, 2, 1>* J_m_shape) const {
   const double rho = p.head<2>().norm();
-  if (p.z() <= 0.0 && rho <= kMinSine * -p.z()) {
+  const double norm2 = slope_ * slope_ * rho * rho + p.z() * p.z();
+  const bool behind = p.z() <= 0.0 && rho <= kMinSine * -p.z();
+  if (behind || !(norm2 > 0.0)) {
     return false;
   }
-  // s = radius / rho; near the axis its limit, where every derivative of s vanishes or is multiplied by rho.
+  // scale = radius / rho; near the axis its limit, where every derivative of it vanishes or is multiplied by rho.
   const bool on_axis = rho < kMinSine * p.z();
   const double angle = std::atan2(slope_ * rho, p.z());
-  const double norm2 = slope_ * slope_ * rho * rho + p.z() * p.z();
   const double scale = on_axis ? slope_ / (w_ * p.z()) : angle / (w_ * rho);
   m = scale * p.head<2>();
   if (J_m_p != nullptr) {

@@ -34,7 +34,7 @@ TEST(CameraTest, ModelsMeetInTheirLimits) {
   expectSameImages(model("eucm-none", {0.0, 1.0, 400.0, 410.0, 320.0, 240.0}), pinhole, 1.5, 1e-9);
   expectSameImages(model("omni-none", {0.0, 400.0, 410.0, 320.0, 240.0}), pinhole, 1.5, 1e-9);
   expectSameImages(model("pinhole-radtan", {400.0, 410.0, 320.0, 240.0, 0.0, 0.0, 0.0, 0.0}), pinhole, 1.5, 1e-9);
-  expectSameImages(model("pinhole-fov", {400.0, 410.0, 320.0, 240.0, 1e-3}), pinhole, 1.2, 1e-3);
+  expectSameImages(model("pinhole-fov", {400.0, 410.0, 320.0, 240.0, 1e-3}), pinhole, 1.0, 1e-3);  // f rho^3 w^2 / 3
   const CameraModel omni = model("omni-none", {0.8, 600.0, 610.0, 320.0, 240.0});
   expectSameImages(model("omni-radtan", {0.8, 600.0, 610.0, 320.0, 240.0, 0.0, 0.0, 0.0, 0.0}), omni, 2.0, 1e-9);
   // Double sphere with alpha = 0 is the unified model; EUCM with beta = 1 is too, xi = alpha / (1 - alpha).

@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <variant>
 #include <vector>
 
 #include "tartan_calib/camera/camera.h"
@@ -89,10 +89,14 @@ constexpr double kAzimuths_rad[] = {0.0, 0.7, 2.1, M_PI, 4.0, 5.5};
 template <class ModelType>
 class ModelTest : public testing::Test {};
 
-using Models = testing::Types<PinholeNone, PinholeRadtan, PinholeEqui, PinholeFov, OmniNone, OmniRadtan, Eucm, DoubleSphere>;
-TYPED_TEST_SUITE(ModelTest, Models);
+template <class Variant>
+struct KindsOf;
+template <class... Kinds>
+struct KindsOf<std::variant<Kinds...>> {
+  using Types = testing::Types<Kinds...>;
+};
 
-TYPED_TEST(ModelTest, EveryKindInTheVariantIsTested) { EXPECT_EQ(modelNames().size(), 8U); }
+TYPED_TEST_SUITE(ModelTest, KindsOf<CameraModel>::Types);
 
 TYPED_TEST(ModelTest, RayToPixelToRayHoldsUpToTheEdgeOfValidity) {
   for (const Eigen::VectorXd& parameters : parameterSets<TypeParam>()) {
