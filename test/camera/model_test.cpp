@@ -206,7 +206,7 @@ TYPED_TEST(ModelTest, ParameterJacobianEqualsCentralDifferences) {
   for (const Eigen::VectorXd& parameters : parameterSets<TypeParam>()) {
     for (const double share : {0.0, 0.3, 0.7, 0.9}) {
       const TypeParam model = modelOf<TypeParam>(parameters);
-      const Eigen::Vector3d p = direction(share * edgeOfValidity(model, 2.1), 2.1);
+      const Eigen::Vector3d p = 0.7 * direction(share * edgeOfValidity(model, 2.1), 2.1);
       Eigen::Vector2d px;
       typename TypeParam::ParameterJacobian J;
       ASSERT_TRUE(model.project(p, px, nullptr, &J));
