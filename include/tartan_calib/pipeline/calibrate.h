@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tartan_calib/calibration/initialize.h"
+#include "tartan_calib/calibration/camera_graph.h"
 #include "tartan_calib/calibration/rig.h"
 #include "tartan_calib/calibration/solve.h"
 #include "tartan_calib/calibration/statistics.h"

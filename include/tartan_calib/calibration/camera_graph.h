@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tartan_calib/observation/observation.h"
+
+namespace tartan_calib::calibration {
+
+/// How the cameras are connected: views that two cameras share, and corners seen by both in those views.
+struct CameraGraph {
+  Eigen::MatrixXi shared_views;  ///< symmetric, num_cameras x num_cameras; the diagonal counts a camera's own
+  Eigen::MatrixXi shared_corners;
+  std::vector<std::vector<int>> groups;  ///< connected components over shared corners, by first camera
+};
+
+CameraGraph cameraGraph(const std::vector<observation::View>& views, int num_cameras);
+
+}  // namespace tartan_calib::calibration
