@@ -118,6 +118,9 @@ CameraCorners detectCorners(const CameraStream& stream, int camera_index, const 
 CalibrationResult calibrate(const std::vector<CameraStream>& streams, const target::Target& target,
                             const CalibrateOptions& options, const Listener& listener = {});
 
+/// What the cameras saw, with Corner::used as the solve left it: what a corners file stores.
+std::vector<CameraCorners> observedCorners(const CalibrationResult& result);
+
 /// The same from corners. Corner::used of the input is not looked at.
 CalibrationResult calibrateCorners(const std::vector<CameraCorners>& cameras, const target::Target& target,
                                    const CalibrateOptions& options, const Listener& listener = {});
