@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,14 @@ enum class LinearSolver {
   kSparse,  ///< CHOLMOD on the whole normal equations
 };
 
+/// Where a running solve stands. Stages: robust losses of falling width, then least squares around the removal of outliers.
+struct SolveProgress {
+  int stage = 0;  ///< from 0
+  int num_stages = 0;
+  int iteration = 0;    ///< within the stage
+  double rms_px = 0.0;  ///< sqrt(mean |e|^2) of the corners that take part, each at most as bad as the stage's loss says
+};
+
 struct SolveOptions {
   LinearSolver linear_solver = LinearSolver::kAuto;
   int num_threads = 0;  ///< 0: all cores. The result has the same bits for every value
@@ -41,17 +50,26 @@ struct SolveOptions {
   bool use_blake_zisserman = false;  ///< Kalibr's --use-blakezisserman weights in the final solve
   bool remove_outliers = true;
   double outlier_sigma = 4.0;   ///< a corner with |residual| above this many stdev of its camera, in u or v, is rejected
-  int min_views_outlier = 20;   ///< no removal in recordings with fewer views per camera
+  int min_views_outlier = 20;   ///< with fewer views per camera the sigma rule is left out; only gross errors are removed
   bool final_filtering = true;  ///< one more pass over all views after the last solve
+
+  /// Called after every iteration from the calling thread; returning false ends the solve with SolveStatus::kCancelled.
+  std::function<bool(const SolveProgress&)> progress;
 };
 
-enum class SolveStatus { kConverged, kMaxIterations, kStalled };
+enum class SolveStatus {
+  kConverged,
+  kMaxIterations,
+  kStalled,    ///< no step lowers the cost although the gradient says that there is one
+  kCancelled,  ///< by the progress callback; the solution is as far as it came, without covariance
+};
 
 /// Why corners did not take part, and how many.
 struct CornerCounts {
   int used = 0;
   int outliers = 0;       ///< rejected by the sigma rule
   int unprojectable = 0;  ///< the model gives the point no image; never silently cheap: counted as rejected
+  int unsupported = 0;    ///< in views left with fewer than four usable corners, which determine no pose
 };
 
 struct Solution {
@@ -62,12 +80,15 @@ struct Solution {
   Eigen::Vector2d board_warp_m = Eigen::Vector2d::Zero();
   std::vector<observation::View> views;  ///< the problem's, with Corner::used set
   std::vector<CornerCounts> counts;      ///< by camera
+  std::vector<int> unsolved_views;       ///< without a used corner; these keep their start pose
 
-  double sigma_px = 0.0;  ///< stdev of a residual component: sqrt(sum of squares / (measurements - parameters))
+  double sigma_px = 0.0;        ///< stdev of a residual component: sqrt(sum of squares / (measurements - parameters))
+  double sigma_whitened = 0.0;  ///< the same of residuals over Corner::cov_px2; equals sigma_px where that is the identity
 
-  /// Covariance of [for each camera >= 1 its baseline T_i_(i-1): rotation vector 3 (rad), translation 3 (m); for each camera
-  /// its parameters in Kalibr's order; board warp 2 where estimated], scaled by sigma_px^2. Fixed parameters have zero rows.
-  /// Empty where the problem does not determine all free parameters; `undetermined` then names them.
+  /// Covariance of [for each camera >= 1 its baseline T_i_(i-1): rotation 3 (rad, R <- exp(phi) R), translation 3 (m); for
+  /// each camera its parameters in Kalibr's order; board warp 2 where estimated], scaled by sigma_whitened^2. Fixed
+  /// parameters and those at their bound have zero rows. Directions that the views do not determine are left out
+  /// (pseudo-inverse); `undetermined` names the parameters that they and the bounds concern.
   Eigen::MatrixXd covariance;
   std::vector<std::string> undetermined;
 };
