@@ -1,0 +1,331 @@
+#include "tartan_calib/detection/saddle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <tuple>
+
+#include "bilinear.h"
+#include "hessian.h"
+
+namespace tartan_calib::detection {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kRingSamples = 32;
+/// Rings around a candidate [level px]: the first must show the four wedges, wider ones only make the arms' angles better.
+constexpr std::array<double, 3> kRingRadii_px = {2.5, 4.0, 6.0};
+constexpr int kMargin_px = 4;                    ///< the first ring plus the way of a candidate
+constexpr int kMinLevelSide_px = 120;            ///< a smaller level has no board of use
+constexpr double kMaxArmBend_rad = 0.6;          ///< between opposite arms of a narrow ring, noise and lens together
+constexpr double kMaxArmDisagreement_rad = 0.3;  ///< between a ring and the next wider one
+constexpr double kMinWedge_rad = 0.25;           ///< narrower wedges are lines
+constexpr double kMaxWedgeImbalance = 0.6;       ///< between wedges of one shade, in units of the contrast
+/// A sharp X-junction of right angles has sqrt(-det H) = contrast / kContrastPerResponse per grey level.
+constexpr double kContrastPerResponse = 4.3;
+constexpr double kSuppressionRadius_px = 1.6;  ///< [level px] of the coarser of two saddles
+
+using Ring = std::array<double, kRingSamples>;
+
+struct Level {
+  cv::Mat gray;
+  cv::Mat smoothed;
+  double scale_px;  ///< full-resolution pixels per pixel of this level
+
+  Eigen::Vector2d toFullResolution(const Eigen::Vector2d& px) const { return (px.array() + 0.5) * scale_px - 0.5; }
+};
+
+struct Wedges {
+  std::array<double, 4> arm_rad;
+  double contrast;
+};
+
+double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
+
+/// Ring of grey values, low-passed by 1 2 1 along the ring.
+Ring sampleRing(const cv::Mat& gray, const Eigen::Vector2d& px, double radius_px) {
+  static const std::array<Eigen::Vector2d, kRingSamples> directions = [] {
+    std::array<Eigen::Vector2d, kRingSamples> unit;
+    for (int k = 0; k < kRingSamples; ++k) {
+      const double angle_rad = 2.0 * kPi * k / kRingSamples;
+      unit[static_cast<std::size_t>(k)] = {std::cos(angle_rad), std::sin(angle_rad)};
+    }
+    return unit;
+  }();
+  Ring raw{};
+  for (std::size_t k = 0; k < kRingSamples; ++k) {
+    raw[k] =
+        sampleBilinear<std::uint8_t>(gray, px.x() + radius_px * directions[k].x(), px.y() + radius_px * directions[k].y());
+  }
+  Ring smooth{};
+  for (std::size_t k = 0; k < kRingSamples; ++k) {
+    smooth[k] = 0.25 * (raw[(k + kRingSamples - 1) % kRingSamples] + 2.0 * raw[k] + raw[(k + 1) % kRingSamples]);
+  }
+  return smooth;
+}
+
+/// Grey value half-way between the dark and the light part of the ring.
+double midGray(const Ring& ring) {
+  double mean = 0.0;
+  for (const double value : ring) {
+    mean += value / kRingSamples;
+  }
+  double light = 0.0;
+  double dark = 0.0;
+  int num_light = 0;
+  for (const double value : ring) {
+    const bool is_light = value > mean;
+    num_light += is_light ? 1 : 0;
+    (is_light ? light : dark) += value;
+  }
+  if (num_light == 0 || num_light == kRingSamples) {
+    return mean;
+  }
+  return 0.5 * (light / num_light + dark / (kRingSamples - num_light));
+}
+
+/// Angles where the ring crosses `mid`, the first from light to dark; nothing unless there are four.
+std::optional<std::array<double, 4>> crossings(const Ring& ring, double mid) {
+  std::array<double, 4> angles{};
+  std::size_t count = 0;
+  bool first_darkens = false;
+  for (std::size_t k = 0; k < kRingSamples; ++k) {
+    const double here = ring[k] - mid;
+    const double next = ring[(k + 1) % kRingSamples] - mid;
+    if ((here > 0.0) == (next > 0.0)) {
+      continue;
+    }
+    if (count == 4) {
+      return std::nullopt;
+    }
+    first_darkens = count == 0 ? here > 0.0 : first_darkens;
+    angles[count++] = (static_cast<double>(k) + here / (here - next)) * 2.0 * kPi / kRingSamples;
+  }
+  if (count != 4) {
+    return std::nullopt;
+  }
+  if (!first_darkens) {
+    std::rotate(angles.begin(), angles.begin() + 1, angles.end());
+    angles[3] += 2.0 * kPi;
+  }
+  return angles;
+}
+
+/// Extreme grey value, relative to `mid`, of the wedge between two angles.
+double wedgePeak(const Ring& ring, double mid, double from_rad, double to_rad) {
+  const auto index = [](double angle_rad) { return angle_rad * kRingSamples / (2.0 * kPi); };
+  double peak = 0.0;
+  for (int k = static_cast<int>(std::ceil(index(from_rad))); k <= static_cast<int>(index(to_rad)); ++k) {
+    peak = std::max(peak, std::abs(ring[static_cast<std::size_t>(k) % kRingSamples] - mid));
+  }
+  return peak;
+}
+
+/// The four wedges of a ring, if it has two dark and two light ones, opposite each other and alike.
+std::optional<Wedges> findWedges(const Ring& ring) {
+  const double mid = midGray(ring);
+  const auto arms = crossings(ring, mid);
+  if (!arms) {
+    return std::nullopt;
+  }
+  const auto& a = *arms;
+  if (std::abs(a[2] - a[0] - kPi) > kMaxArmBend_rad || std::abs(a[3] - a[1] - kPi) > kMaxArmBend_rad) {
+    return std::nullopt;
+  }
+  std::array<double, 4> peaks{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double end_rad = k < 3 ? a[k + 1] : a[0] + 2.0 * kPi;
+    if (end_rad - a[k] < kMinWedge_rad) {
+      return std::nullopt;
+    }
+    peaks[k] = wedgePeak(ring, mid, a[k], end_rad);
+  }
+  const double contrast = 0.5 * (peaks[0] + peaks[1] + peaks[2] + peaks[3]);
+  const double imbalance = std::max(std::abs(peaks[0] - peaks[2]), std::abs(peaks[1] - peaks[3]));
+  if (imbalance > kMaxWedgeImbalance * contrast) {
+    return std::nullopt;
+  }
+  return Wedges{a, contrast};
+}
+
+bool agree(const Wedges& narrow, const Wedges& wide) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (std::abs(wrapped(narrow.arm_rad[k] - wide.arm_rad[k])) > kMaxArmDisagreement_rad) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A wide ring may start at the opposite arm; this gives it the narrow ring's order.
+Wedges sameOrder(const Wedges& narrow, Wedges wide) {
+  if (std::abs(wrapped(narrow.arm_rad[0] - wide.arm_rad[0])) > 0.5 * kPi) {
+    std::rotate(wide.arm_rad.begin(), wide.arm_rad.begin() + 2, wide.arm_rad.end());
+    wide.arm_rad[2] += 2.0 * kPi;
+    wide.arm_rad[3] += 2.0 * kPi;
+  }
+  return wide;
+}
+
+std::optional<Wedges> examine(const Level& level, const Eigen::Vector2d& px) {
+  std::optional<Wedges> wedges;
+  for (const double radius_px : kRingRadii_px) {
+    const double reach_px = radius_px + 1.0;
+    if (!canSample(level.gray, px.x() - reach_px, px.y() - reach_px) ||
+        !canSample(level.gray, px.x() + reach_px, px.y() + reach_px)) {
+      break;
+    }
+    auto wider = findWedges(sampleRing(level.gray, px, radius_px));
+    if (!wider) {
+      break;
+    }
+    if (wedges) {
+      wider = sameOrder(*wedges, *wider);
+      if (!agree(*wedges, *wider)) {
+        break;
+      }
+    }
+    wedges = wider;
+  }
+  return wedges;
+}
+
+/// Newton steps from a peak of the response to the zero of the gradient; nothing where the surface has no saddle near it.
+std::optional<Eigen::Vector2d> locateSaddle(const cv::Mat& smoothed, const SaddlePeak& peak) {
+  constexpr int kMaxMoves = 3;
+  constexpr double kMaxStep_px = 1.5;
+  int x = peak.x;
+  int y = peak.y;
+  for (int move = 0; move < kMaxMoves; ++move) {
+    if (x < 1 || y < 1 || x >= smoothed.cols - 1 || y >= smoothed.rows - 1) {
+      return std::nullopt;
+    }
+    const std::int16_t* above = smoothed.ptr<std::int16_t>(y - 1) + x;
+    const std::int16_t* row = smoothed.ptr<std::int16_t>(y) + x;
+    const std::int16_t* below = smoothed.ptr<std::int16_t>(y + 1) + x;
+    const Eigen::Vector2d gradient(0.5 * (row[1] - row[-1]), 0.5 * (below[0] - above[0]));
+    Eigen::Matrix2d hessian;
+    hessian(0, 0) = row[1] + row[-1] - 2 * row[0];
+    hessian(1, 1) = below[0] + above[0] - 2 * row[0];
+    hessian(0, 1) = hessian(1, 0) = 0.25 * (above[-1] + below[1] - above[1] - below[-1]);
+    const double det = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(0, 1);
+    if (det >= 0.0) {
+      return std::nullopt;
+    }
+    const Eigen::Vector2d step(-(hessian(1, 1) * gradient.x() - hessian(0, 1) * gradient.y()) / det,
+                               -(hessian(0, 0) * gradient.y() - hessian(0, 1) * gradient.x()) / det);
+    if (step.cwiseAbs().maxCoeff() > kMaxStep_px) {
+      return std::nullopt;
+    }
+    if (step.cwiseAbs().maxCoeff() <= 0.6) {
+      return Eigen::Vector2d(x, y) + step;
+    }
+    x += static_cast<int>(std::lround(step.x()));
+    y += static_cast<int>(std::lround(step.y()));
+  }
+  return std::nullopt;
+}
+
+/// Keeps the strongest peaks of a level; equal ones by position, so that the result does not depend on the library.
+void keepStrongest(std::vector<SaddlePeak>& peaks, std::size_t max_count) {
+  if (peaks.size() <= max_count) {
+    return;
+  }
+  const auto stronger = [](const SaddlePeak& a, const SaddlePeak& b) {
+    return std::tie(b.response, a.y, a.x) < std::tie(a.response, b.y, b.x);
+  };
+  std::nth_element(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(max_count), peaks.end(), stronger);
+  peaks.resize(max_count);
+}
+
+std::vector<Saddle> findInLevel(const Level& level, const SaddleOptions& options) {
+  const double min_response = kSmoothedUnitsPerGrey * 0.5 * options.min_contrast / kContrastPerResponse;
+  auto peaks = findSaddlePeaks(level.smoothed, static_cast<std::int32_t>(min_response * min_response), kMargin_px);
+  keepStrongest(peaks, level.gray.total() / static_cast<std::size_t>(std::max(1, options.min_px2_per_saddle)));
+  std::vector<Saddle> saddles;
+  for (const SaddlePeak& peak : peaks) {
+    const auto px = locateSaddle(level.smoothed, peak);
+    if (!px) {
+      continue;
+    }
+    const auto wedges = examine(level, *px);
+    if (wedges && wedges->contrast >= options.min_contrast) {
+      saddles.push_back({level.toFullResolution(*px), wedges->arm_rad, wedges->contrast, level.scale_px});
+    }
+  }
+  return saddles;
+}
+
+std::vector<Level> buildPyramid(const cv::Mat& gray, int num_levels) {
+  std::vector<Level> levels;
+  cv::Mat image = gray;
+  double scale_px = 1.0;
+  while (static_cast<int>(levels.size()) < num_levels) {
+    levels.push_back({image, smoothBinomial(image), scale_px});
+    if (std::min(image.cols, image.rows) / 2 < kMinLevelSide_px) {
+      break;
+    }
+    // An odd last row or column is left out, so that pixels keep their exact places.
+    const cv::Mat even = image(cv::Rect(0, 0, image.cols / 2 * 2, image.rows / 2 * 2));
+    cv::Mat half;
+    cv::resize(even, half, even.size() / 2, 0.0, 0.0, cv::INTER_AREA);
+    image = half;
+    scale_px *= 2.0;
+  }
+  return levels;
+}
+
+/// Of saddles that lie on each other keeps the strongest, the sharper where they are about as strong.
+std::vector<Saddle> suppressDuplicates(std::vector<Saddle> saddles, const cv::Size& size) {
+  constexpr int kCell_px = 16;                   // no smaller than the largest suppression radius
+  constexpr double kContrastGainPerLevel = 1.4;  // a coarser level must show more by this factor to be preferred
+  const auto merit = [](const Saddle& s) { return s.contrast * std::pow(kContrastGainPerLevel, -std::log2(s.scale_px)); };
+  std::sort(saddles.begin(), saddles.end(), [&merit](const Saddle& a, const Saddle& b) {
+    return std::make_tuple(-merit(a), a.scale_px, a.px.y(), a.px.x()) <
+           std::make_tuple(-merit(b), b.scale_px, b.px.y(), b.px.x());
+  });
+  const int cells_x = size.width / kCell_px + 3;
+  const int cells_y = size.height / kCell_px + 3;
+  std::vector<std::vector<std::size_t>> cells(static_cast<std::size_t>(cells_x * cells_y));
+  const auto cellIndex = [&](const Eigen::Vector2d& px, int dx, int dy) {
+    return static_cast<std::size_t>((static_cast<int>(px.y()) / kCell_px + 1 + dy) * cells_x +
+                                    static_cast<int>(px.x()) / kCell_px + 1 + dx);
+  };
+  std::vector<Saddle> kept;
+  const auto isTaken = [&](const Saddle& saddle) {
+    for (int neighbour = 0; neighbour < 9; ++neighbour) {
+      for (const std::size_t other : cells[cellIndex(saddle.px, neighbour % 3 - 1, neighbour / 3 - 1)]) {
+        const double radius_px = kSuppressionRadius_px * std::max(kept[other].scale_px, saddle.scale_px);
+        if ((kept[other].px - saddle.px).squaredNorm() < radius_px * radius_px) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  for (const Saddle& saddle : saddles) {
+    if (!isTaken(saddle)) {
+      cells[cellIndex(saddle.px, 0, 0)].push_back(kept.size());
+      kept.push_back(saddle);
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Saddle> findSaddles(const cv::Mat& gray, const SaddleOptions& options) {
+  CV_Assert(gray.type() == CV_8UC1);
+  std::vector<Saddle> saddles;
+  if (std::min(gray.cols, gray.rows) <= 2 * kMargin_px + 1) {
+    return saddles;
+  }
+  for (const Level& level : buildPyramid(gray, options.num_levels)) {
+    const auto found = findInLevel(level, options);
+    saddles.insert(saddles.end(), found.begin(), found.end());
+  }
+  return suppressDuplicates(std::move(saddles), gray.size());
+}
+
+}  // namespace tartan_calib::detection
