@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tartan_calib/camera/camera.h"
+#include "tartan_calib/geometry/rigid3.h"
+#include "tartan_calib/target/target.h"
+
+namespace tartan_calib::simulation {
+
+/// Where a corner of the board really is in an image.
+struct TrueCorner {
+  int corner_id = -1;
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  bool visible = true;                 ///< inside of the image and of the lens' circle, and clear of occluders
+  double neighbour_distance_px = 0.0;  ///< to the nearest other corner of the board
+  /// Cramer-Rao bound: no unbiased estimate from the pixels around this corner can have a smaller covariance. Zero where it
+  /// was not asked for, infinite where the pixels say nothing.
+  Eigen::Matrix2d bound_px2 = Eigen::Matrix2d::Zero();
+};
+
+/// Corners must be so far inside of the image and of the lens' circle to count as visible.
+constexpr double kMinBorderDistancePx = 2.0;
+
+/// The corners that the camera images within its width and height, by increasing id; none where it is behind the board.
+/// `visible` knows of the image's border only.
+std::vector<TrueCorner> projectCorners(const target::Target& target, const camera::Camera& camera,
+                                       const geometry::Rigid3& T_cam_target);
+
+}  // namespace tartan_calib::simulation

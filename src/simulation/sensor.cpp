@@ -1,0 +1,33 @@
+#include "tartan_calib/simulation/sensor.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace tartan_calib::simulation {
+
+void applyPsf(cv::Mat1f& grey, double sigma_px) {
+  constexpr double kRadiusInSigmas = 4.0;  // cuts 6e-5 of the weight
+  if (sigma_px <= 0.0) {
+    return;
+  }
+  const int size = 2 * static_cast<int>(std::ceil(kRadiusInSigmas * sigma_px)) + 1;
+  cv::GaussianBlur(grey, grey, cv::Size(size, size), sigma_px, sigma_px, cv::BORDER_REPLICATE);
+}
+
+cv::Mat expose(const cv::Mat1f& grey, const SensorOptions& options, std::uint64_t seed) {
+  cv::Mat1f noisy = grey.clone();
+  const double read_variance = options.read_noise_grey * options.read_noise_grey;
+  if (read_variance > 0.0 || options.shot_noise_grey > 0.0) {
+    cv::Mat1f unit(grey.size());
+    cv::RNG rng(seed);
+    rng.fill(unit, cv::RNG::NORMAL, 0.0, 1.0);
+    cv::Mat sigma = cv::max(grey, 0.0F) * options.shot_noise_grey + read_variance;
+    cv::sqrt(sigma, sigma);
+    noisy += unit.mul(sigma);
+  }
+  cv::Mat image;
+  noisy.convertTo(image, CV_8U);
+  return image;
+}
+
+}  // namespace tartan_calib::simulation
