@@ -11,6 +11,7 @@
 #include "tartan_calib/calibration/rig.h"
 #include "tartan_calib/calibration/solve.h"
 #include "tartan_calib/calibration/statistics.h"
+#include "tartan_calib/camera/camera.h"
 #include "tartan_calib/detection/target_detector.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/observation/observation.h"
@@ -58,7 +59,7 @@ std::string stageName(Stage stage);
 struct Progress {
   Stage stage = Stage::kDetect;
   int camera_index = -1;  ///< -1 where the stage is about all cameras
-  std::size_t done = 0;   ///< images or, in other stages, 0 at the beginning and 1 at the end
+  std::size_t done = 0;   ///< images; iterations of kSolve, whose total is unknown (0); otherwise 0, then 1
   std::size_t total = 0;
 };
 
@@ -69,7 +70,7 @@ struct Listener {
   std::function<void(int camera_index, const camera::Camera&)> camera_started;
   std::function<void(const calibration::Problem&)> rig_started;
   std::function<void(const std::string&)> warning;  ///< the same texts are in CalibrationResult::warnings
-  std::function<bool()> is_cancelled;               ///< asked at least once per image and stage
+  std::function<bool()> is_cancelled;               ///< asked once per image, stage and iteration of the solve
 };
 
 /// The listener asked to stop.
@@ -104,6 +105,7 @@ struct CalibrationResult {
   /// Seen, but out of the solve (too few tags, or no pose explains them), by camera, then stamp; Corner::used is false.
   std::vector<observation::CameraView> unused_images;
   calibration::CameraGraph graph;  ///< of all synchronised views
+  int num_dropped_views = 0;       ///< synchronised views that nothing explains; their images are in unused_images
   std::vector<std::string> warnings;
   std::vector<StageTime> times;  ///< in the order in which the stages ended
 };

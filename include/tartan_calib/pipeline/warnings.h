@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tartan_calib/pipeline/calibrate.h"
+
+namespace tartan_calib::pipeline {
+
+/// Says so where corners beyond 90 degrees took part in a model that Kalibr and OpenCV end at 90 degrees.
+std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index);
+
+/// About images and tags of one camera: skipped images, dropped tags, a border of another width.
+std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target);
+
+/// About a finished calibration: too little data, doubtful or undetermined parameters, values that Kalibr would not write.
+std::vector<std::string> resultWarnings(const CalibrationResult& result);
+
+}  // namespace tartan_calib::pipeline
