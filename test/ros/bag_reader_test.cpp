@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+#include <sensor_msgs/CompressedImage.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "ros/bag_file.h"
+
+namespace tartan_calib::ros {
+namespace {
+
+std::vector<std::int64_t> readStamps(const std::string& path, const io::RecordingOptions& options) {
+  std::vector<std::int64_t> stamps_ms;
+  for (const auto& image : readAll(path, options)) {
+    stamps_ms.push_back((image.stamp_ns - kStart) / kMs);
+  }
+  return stamps_ms;
+}
+
+TEST(BagReader, OrdersImagesByHeaderStamp) {
+  const BagFile bag;
+  store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "mono8", kStart + 30 * kMs), message(grayRamp(), "mono8"),
+                                         message(grayRamp(), "mono8", kStart + 10 * kMs)});
+  EXPECT_EQ(readStamps(bag.path(), {}), (std::vector<std::int64_t>{0, 10, 30}));
+}
+
+TEST(BagReader, UsesTheTimeOfReceiptWhereNoStampWasSet) {
+  const BagFile bag;
+  store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "mono8", 0), message(grayRamp(), "mono8", 0)});
+  EXPECT_EQ(readStamps(bag.path(), {}), (std::vector<std::int64_t>{6, 7}));
+}
+
+class Selection : public ::testing::Test {
+ protected:
+  Selection() {
+    std::vector<sensor_msgs::Image> messages;
+    for (const int time_ms : {400, 0, 100, 200, 300, 500}) {  // not stored in order: t0 is the smallest stamp
+      messages.push_back(message(grayRamp(), "mono8", kStart + time_ms * kMs));
+    }
+    store(bag_.path(), messages);
+  }
+  BagFile bag_;
+  io::RecordingOptions options_;
+};
+
+TEST_F(Selection, OfAWindowIncludesBothEnds) {
+  options_.window = io::TimeWindow{0.1, 0.3};
+  EXPECT_EQ(readStamps(bag_.path(), options_), (std::vector<std::int64_t>{100, 200, 300}));
+}
+
+TEST_F(Selection, ByRateKeepsTheFirstImageAndThoseAPeriodAfterTheLastKept) {
+  options_.max_rate_hz = 4.0;
+  EXPECT_EQ(readStamps(bag_.path(), options_), (std::vector<std::int64_t>{0, 300}));
+}
+
+TEST_F(Selection, AtTheRateOfTheRecordingKeepsAll) {
+  options_.max_rate_hz = 10.0;
+  EXPECT_EQ(readStamps(bag_.path(), options_).size(), 6U);
+}
+
+TEST_F(Selection, CountsInTheStream) {
+  options_.window = io::TimeWindow{0.1, 0.3};
+  EXPECT_EQ(openBag(bag_.path(), {kTopic}, options_).front().num_images, 3U);
+}
+
+TEST_F(Selection, RefusesWhatSelectsNothing) {
+  options_.window = io::TimeWindow{0.3, 0.3};
+  EXPECT_NE(errorOf([&] { openBag(bag_.path(), {kTopic}, options_); }).find("empty"), std::string::npos);
+  options_.window = io::TimeWindow{7.0, 8.0};
+  EXPECT_NE(errorOf([&] { openBag(bag_.path(), {kTopic}, options_); }).find(kTopic), std::string::npos);
+  options_.window.reset();
+  options_.max_rate_hz = 0.0;
+  EXPECT_NE(errorOf([&] { openBag(bag_.path(), {kTopic}, options_); }).find("positive"), std::string::npos);
+}
+
+TEST(BagReader, CanBeReadAgain) {
+  const BagFile bag;
+  store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "mono8")});
+  const auto streams = openBag(bag.path(), {kTopic}, {});
+  for (int pass = 0; pass < 2; ++pass) {
+    const pipeline::ImageSource source = streams.front().open();
+    ASSERT_TRUE(source().has_value());
+    EXPECT_FALSE(source().has_value());
+  }
+}
+
+TEST(BagReader, ReportsASingleBrokenImageWhereItIsLoaded) {
+  const BagFile bag;
+  sensor_msgs::Image short_of_data = message(grayRamp(), "mono8", kStart + kMs);
+  short_of_data.data.resize(short_of_data.data.size() / 2);
+  store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "mono8"), short_of_data});
+  const auto images = readAll(bag.path());
+  ASSERT_EQ(images.size(), 2U);
+  EXPECT_NO_THROW(images[0].load());
+  const std::string error = errorOf([&] { images[1].load(); });
+  EXPECT_NE(error.find(kTopic), std::string::npos) << error;
+  EXPECT_NE(error.find(std::to_string(kStart + kMs)), std::string::npos) << error;
+}
+
+TEST(BagReader, NamesTopicAndEncodingThatItCannotRead) {
+  const BagFile bag;
+  store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "32FC1")});
+  const std::string error = errorOf([&] { openBag(bag.path(), {kTopic}, {}); });
+  EXPECT_NE(error.find("32FC1"), std::string::npos) << error;
+  EXPECT_NE(error.find(kTopic), std::string::npos) << error;
+}
+
+TEST(BagReader, RefusesCompressedDepth) {
+  const BagFile bag;
+  sensor_msgs::CompressedImage image;
+  image.format = "16UC1; compressedDepth png";
+  store<sensor_msgs::CompressedImage>(bag.path(), {image});
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {kTopic}, {}); }).find("compressedDepth"), std::string::npos);
+}
+
+TEST(BagReader, ListsTheImageTopicsForOneThatIsNotThere) {
+  const BagFile bag;
+  {
+    BagWriter writer(bag.path());
+    writer.writeImage(kTopic, kStart, grayRamp());
+    writer.writeImu("/imu0", {});
+    writer.close();
+  }
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {"/cam1"}, {}); }).find("image topics: " + kTopic), std::string::npos);
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {"/imu0"}, {}); }).find("sensor_msgs/Imu"), std::string::npos);
+}
+
+TEST(BagReader, SaysHowToRepairABagThatWasCutOff) {
+  const BagFile bag;
+  store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "mono8"), message(grayRamp(), "mono8")});
+  std::filesystem::resize_file(bag.path(), std::filesystem::file_size(bag.path()) * 2 / 3);
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {kTopic}, {}); }).find("rosbag reindex"), std::string::npos);
+}
+
+TEST(BagReader, NamesABagThatIsMissingOrNone) {
+  EXPECT_NE(errorOf([] { openBag("/nowhere/a.bag", {kTopic}, {}); }).find("does not exist"), std::string::npos);
+  const BagFile text;
+  std::ofstream(text.path()) << "not a bag\n";
+  EXPECT_NE(errorOf([&] { openBag(text.path(), {kTopic}, {}); }).find(text.path()), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tartan_calib::ros
