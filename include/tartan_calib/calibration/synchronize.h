@@ -7,8 +7,9 @@
 
 namespace tartan_calib::calibration {
 
-/// Joins single images to views: each stamp goes to the nearest view within tolerance, at most one image of a camera per
-/// view. `cameras[i]`: the views of camera i by increasing stamp. Views are returned by increasing stamp.
+/// Joins images of several cameras to views, nearest stamps first, at most one image of a camera per view. The stamp of a
+/// view is that of its camera with the lowest index; no image is further than the tolerance from it. `cameras[i]`: the
+/// images of camera i in any order. Views are returned by increasing stamp.
 std::vector<observation::View> synchronize(const std::vector<std::vector<observation::CameraView>>& cameras,
                                            std::int64_t tolerance_ns);
 

@@ -1,0 +1,269 @@
+#include "tartan_calib/calibration/pose.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "robust.h"
+
+namespace tartan_calib::calibration {
+namespace {
+
+using geometry::Rigid3;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kSampleSize = 4;  ///< corners that determine a plane's homography
+/// With 40 % wrong corners a sample is right with probability 0.13: 100 samples miss once in 10^6.
+constexpr int kMaxSamples = 100;
+/// Half of the corners this close: no need to look for a better start. As a share of the image's diagonal.
+constexpr double kGoodStart = 5e-4;
+/// A pose that is further off for half of the corners explains nothing.
+constexpr double kExplained = 2e-2;
+
+/// A corner with its bearing.
+struct Sighting {
+  Eigen::Vector3d p_target;
+  Eigen::Vector2d px;
+  Eigen::Vector3d ray;
+  double px_per_rad;  ///< image scale there, mean of radial and tangential
+};
+
+template <typename Model>
+std::vector<Sighting> sightings(const Model& model, const std::vector<Eigen::Vector3d>& target_points,
+                                const std::vector<observation::Corner>& corners) {
+  std::vector<Sighting> result;
+  result.reserve(corners.size());
+  for (const observation::Corner& corner : corners) {
+    Sighting s{target_points.at(static_cast<std::size_t>(corner.corner_id)), corner.px, {}, 0.0};
+    Eigen::Vector2d px;
+    camera::Matrix23d J_px_ray;
+    if (model.unproject(corner.px, s.ray) && model.project(s.ray, px, &J_px_ray)) {
+      s.px_per_rad = J_px_ray.norm() / std::sqrt(2.0);
+      result.push_back(s);
+    }
+  }
+  return result;
+}
+
+/// The pose that maps the plane's points to the four rays, from the homography H with H [x y 1]' ~ ray: three points as a
+/// basis, the fourth fixes their depths. Empty where a depth is negative or three points lie on a line.
+std::optional<Rigid3> planarPose(const std::array<const Sighting*, kSampleSize>& sample) {
+  Eigen::Matrix3d points;
+  Eigen::Matrix3d rays;
+  for (int i = 0; i < 3; ++i) {
+    points.col(i) = sample[static_cast<std::size_t>(i)]->p_target.head<2>().homogeneous();
+    rays.col(i) = sample[static_cast<std::size_t>(i)]->ray;
+  }
+  const Eigen::Matrix3d inverse = points.inverse();
+  const Eigen::Vector3d a = inverse * sample[3]->p_target.head<2>().homogeneous();
+  const Eigen::Vector3d depths = (rays.inverse() * sample[3]->ray).cwiseQuotient(a);
+  if (!(depths.array() > 0.0).all() || !depths.allFinite()) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix3d H = rays * depths.asDiagonal() * inverse;
+  const double scale = std::sqrt(H.col(0).norm() * H.col(1).norm());
+  // The nearest two orthonormal columns.
+  const Eigen::Matrix<double, 3, 2> columns = H.leftCols<2>() / scale;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Matrix<double, 3, 2> r = svd.matrixU() * svd.matrixV().transpose();
+  Eigen::Matrix3d R;
+  R << r, r.col(0).cross(r.col(1));
+  if (!R.allFinite()) {
+    return std::nullopt;
+  }
+  return Rigid3(R, Eigen::Vector3d(H.col(2) / scale));
+}
+
+/// Half of all corners are at least this close to where the pose puts them, approximately [px].
+double medianAngularError(const std::vector<Sighting>& sightings, const Rigid3& T_cam_target, std::vector<double>& buffer) {
+  buffer.clear();
+  const Eigen::Matrix3d R = T_cam_target.rotation.toRotationMatrix();
+  for (const Sighting& s : sightings) {
+    const Eigen::Vector3d p_cam = R * s.p_target + T_cam_target.translation;
+    buffer.push_back(s.px_per_rad * (p_cam.normalized() - s.ray).norm());
+  }
+  return median(buffer);
+}
+
+/// Least median of squares over samples of four.
+std::optional<Rigid3> searchPose(const std::vector<Sighting>& sightings, double good_px) {
+  Sampler sampler;
+  std::optional<Rigid3> best;
+  double best_px = kInfinity;
+  std::vector<double> buffer;
+  for (int i = 0; i < kMaxSamples && best_px > good_px; ++i) {
+    std::array<std::size_t, kSampleSize> indices;
+    sampler.draw(sightings.size(), indices);
+    std::array<const Sighting*, kSampleSize> sample;
+    for (std::size_t k = 0; k < kSampleSize; ++k) {
+      sample[k] = &sightings[indices[k]];
+    }
+    const std::optional<Rigid3> T = planarPose(sample);
+    if (!T) {
+      continue;
+    }
+    const double error_px = medianAngularError(sightings, *T, buffer);
+    if (error_px < best_px) {
+      best_px = error_px;
+      best = T;
+    }
+  }
+  return best;
+}
+
+/// A pose with the median of its reprojection errors over all corners [px].
+struct ScoredPose {
+  Rigid3 T_cam_target;
+  double median_px = kInfinity;
+};
+
+template <typename Model>
+double medianError(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target) {
+  std::vector<double> errors_px;
+  for (const Sighting& s : sightings) {
+    Eigen::Vector2d px;
+    errors_px.push_back(model.project(T_cam_target * s.p_target, px) ? (px - s.px).norm() : kInfinity);
+  }
+  return median(errors_px);
+}
+
+/// Sum of Cauchy's loss of `scale_px`; corners without an image cost as much as one 10 scales off.
+template <typename Model>
+double robustCost(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target, double scale_px) {
+  constexpr double kLost = 100.0;
+  double cost = 0.0;
+  for (const Sighting& s : sightings) {
+    Eigen::Vector2d px;
+    const double ratio2 =
+        model.project(T_cam_target * s.p_target, px) ? (px - s.px).squaredNorm() / (scale_px * scale_px) : kLost;
+    cost += std::log1p(ratio2);
+  }
+  return cost;
+}
+
+/// The step of Levenberg-Marquardt on Cauchy's loss.
+template <typename Model>
+geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target,
+                            double scale_px, double damping) {
+  geometry::Matrix6d JtJ = geometry::Matrix6d::Zero();
+  geometry::Vector6d Jtr = geometry::Vector6d::Zero();
+  for (const Sighting& s : sightings) {
+    const Eigen::Vector3d p_cam = T_cam_target * s.p_target;
+    Eigen::Vector2d px;
+    camera::Matrix23d J_px_p;
+    if (!model.project(p_cam, px, &J_px_p)) {
+      continue;
+    }
+    Eigen::Matrix<double, 2, 6> J;
+    J << J_px_p, -J_px_p * geometry::hat(p_cam);
+    const Eigen::Vector2d residual_px = s.px - px;
+    const double weight = cauchyWeight(residual_px.norm(), scale_px);
+    JtJ += weight * J.transpose() * J;
+    Jtr += weight * J.transpose() * residual_px;
+  }
+  JtJ.diagonal() *= 1.0 + damping;
+  return JtJ.ldlt().solve(Jtr);
+}
+
+template <typename Model>
+Rigid3 refinePose(const Model& model, const std::vector<Sighting>& sightings, Rigid3 T_cam_target, double scale_px) {
+  constexpr int kMaxSteps = 20;
+  constexpr double kConverged = 1e-9;  // rad, and share of the distance
+  constexpr double kMaxDamping = 1e6;
+  double damping = 1e-4;
+  double cost = robustCost(model, sightings, T_cam_target, scale_px);
+  for (int i = 0; i < kMaxSteps && damping < kMaxDamping; ++i) {
+    const geometry::Vector6d step = poseStep(model, sightings, T_cam_target, scale_px, damping);
+    if (!step.allFinite()) {
+      break;
+    }
+    const Rigid3 next = geometry::expRigid(step) * T_cam_target;
+    const double next_cost = robustCost(model, sightings, next, scale_px);
+    if (next_cost > cost) {
+      damping *= 10.0;
+      continue;
+    }
+    T_cam_target = next;
+    cost = next_cost;
+    damping *= 0.1;
+    if (step.head<3>().norm() < kConverged * T_cam_target.translation.norm() && step.tail<3>().norm() < kConverged) {
+      break;
+    }
+  }
+  return T_cam_target;
+}
+
+/// Width of Cauchy's loss for corners of which half are within `median_px`.
+double lossScale(double median_px) {
+  constexpr double kMin_px = 0.05;  // far below what a detector reaches
+  constexpr double kMax_px = 50.0;
+  return std::min(std::max(2.0 * median_px, kMin_px), kMax_px);
+}
+
+/// Refines twice, the second time with a loss as narrow as the corners are good.
+template <typename Model>
+ScoredPose polishPose(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& start) {
+  ScoredPose pose{start, medianError(model, sightings, start)};
+  for (int round = 0; round < 2; ++round) {
+    const Rigid3 refined = refinePose(model, sightings, pose.T_cam_target, lossScale(pose.median_px));
+    const double median_px = medianError(model, sightings, refined);
+    if (median_px > pose.median_px) {
+      break;
+    }
+    pose = {refined, median_px};
+  }
+  return pose;
+}
+
+/// The other pose from which a small board looks nearly the same: its normal mirrored at the line of sight.
+Rigid3 mirroredPose(const Rigid3& T_cam_target, const Eigen::Vector3d& centre_target) {
+  const Eigen::Vector3d centre_cam = T_cam_target * centre_target;
+  const Eigen::Vector3d sight = centre_cam.normalized();
+  const Eigen::Vector3d normal = T_cam_target.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d mirrored = 2.0 * sight.dot(normal) * sight - normal;
+  const Eigen::Quaterniond R = Eigen::Quaterniond::FromTwoVectors(normal, mirrored) * T_cam_target.rotation;
+  return Rigid3(R, centre_cam - R * centre_target);
+}
+
+template <typename Model>
+std::optional<Rigid3> estimate(const Model& model, const std::vector<Sighting>& sightings, double diagonal_px) {
+  const std::optional<Rigid3> start = searchPose(sightings, kGoodStart * diagonal_px);
+  if (!start) {
+    return std::nullopt;
+  }
+  ScoredPose best = polishPose(model, sightings, *start);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Sighting& s : sightings) {
+    centre += s.p_target / static_cast<double>(sightings.size());
+  }
+  const ScoredPose other = polishPose(model, sightings, mirroredPose(best.T_cam_target, centre));
+  const double scale_px = lossScale(std::min(best.median_px, other.median_px));
+  if (robustCost(model, sightings, other.T_cam_target, scale_px) <
+      robustCost(model, sightings, best.T_cam_target, scale_px)) {
+    best = other;
+  }
+  if (!(best.median_px < kExplained * diagonal_px)) {
+    return std::nullopt;
+  }
+  return best.T_cam_target;
+}
+
+}  // namespace
+
+std::optional<Rigid3> estimatePose(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
+                                   const std::vector<observation::Corner>& corners) {
+  return std::visit(
+      [&](const auto& model) -> std::optional<Rigid3> {
+        const std::vector<Sighting> seen = sightings(model, target_points, corners);
+        if (seen.size() < kSampleSize || 2 * seen.size() < corners.size()) {
+          return std::nullopt;
+        }
+        return estimate(model, seen, std::hypot(camera.width, camera.height));
+      },
+      camera.model);
+}
+
+}  // namespace tartan_calib::calibration
