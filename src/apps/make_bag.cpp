@@ -1,0 +1,58 @@
+#include <boost/program_options.hpp>
+#include <iostream>
+
+#include "common/program.h"
+#include "make_bag/make_bag.h"
+
+namespace {
+
+namespace po = boost::program_options;
+using namespace tartan_calib::apps;
+
+constexpr const char* kHelp = R"(Makes a ROS bag of a folder with images, as kalibr_bagcreater does.
+
+  rosrun tartan_calib make_bag --folder recording --output-bag recording.bag
+
+recording/cam0/1606153907495166540.png (or jpg, bmp, pgm) becomes a mono8 image on /cam0/image_raw, stamped with its name
+in nanoseconds; rows 'stamp_ns, wx, wy, wz, ax, ay, az' of recording/imu0.csv become sensor_msgs/Imu on /imu0.
+
+  --folder F        folder with a subfolder of images per camera
+  --output-bag B    bag to write; --output_bag is understood too
+  -h, --help        this text
+)";
+
+po::variables_map parse(int argc, char** argv) {
+  po::options_description options;
+  options.add_options()("help,h", "")("folder", po::value<std::string>())("output-bag", po::value<std::string>())(
+      "output_bag", po::value<std::string>());
+  po::variables_map values;
+  try {
+    po::store(po::parse_command_line(argc, argv, options), values);
+  } catch (const po::error& error) {
+    throw UsageError(std::string(error.what()) + "; see --help");
+  }
+  return values;
+}
+
+int run(int argc, char** argv) {
+  const po::variables_map values = parse(argc, argv);
+  if (argc == 1 || values.count("help") > 0) {
+    std::cout << kHelp;
+    return argc == 1 ? kWrongUsage : kSuccess;
+  }
+  const char* bag_option = values.count("output_bag") > 0 ? "output_bag" : "output-bag";
+  if (values.count("folder") == 0 || values.count(bag_option) == 0) {
+    throw UsageError("--folder and --output-bag are needed; see --help");
+  }
+  const auto bag = values[bag_option].as<std::string>();
+  const BagContents contents = makeBag(values["folder"].as<std::string>(), bag, printWarning);
+  std::cout << "Wrote " << contents.num_images << " images and " << contents.num_imu_samples << " IMU samples to " << bag
+            << '\n';
+  return kSuccess;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runProgram([&] { return run(argc, argv); });
+}

@@ -1,0 +1,98 @@
+#include "make_bag/make_bag.h"
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/Imu.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tartan_calib/error.h"
+#include "tartan_calib/ros/bag_reader.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MakeBag : public ::testing::Test {
+ protected:
+  MakeBag() : folder_(fs::temp_directory_path() / ("make_bag_test." + std::to_string(::getpid()))) {
+    fs::create_directories(folder_ / "cam0");
+    fs::create_directories(folder_ / "cam1");
+  }
+  ~MakeBag() override { fs::remove_all(folder_); }
+
+  void writeImage(const std::string& name, int value) {
+    cv::imwrite((folder_ / name).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(value)));
+  }
+  void writeText(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  std::string bag() const { return (folder_ / "out.bag").string(); }
+
+  fs::path folder_;
+  std::vector<std::string> notices_;
+};
+
+TEST_F(MakeBag, StoresImagesAndImuByIncreasingStamp) {
+  writeImage("cam0/1000.png", 10);
+  writeImage("cam1/2000.png", 20);
+  writeImage("cam0/3000.png", 30);
+  writeText("imu0.csv", "#stamp,wx,wy,wz,ax,ay,az\n2500,0.1,0.2,0.3,1,2,9.8\n500, 0, 0, 0, 0, 0, 9.81\n");
+  const BagContents contents = makeBag(folder_.string(), bag(), {});
+  EXPECT_EQ(contents.num_images, 3U);
+  EXPECT_EQ(contents.num_imu_samples, 2U);
+
+  rosbag::Bag stored(bag());
+  std::vector<std::string> order;
+  for (const rosbag::MessageInstance& message : rosbag::View(stored)) {
+    order.push_back(message.getTopic());
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"/imu0", "/cam0/image_raw", "/cam1/image_raw", "/imu0", "/cam0/image_raw"}));
+}
+
+TEST_F(MakeBag, KeepsStampsPixelsAndRates) {
+  constexpr std::int64_t kStamp = 1606153907495166540;
+  writeImage("cam0/" + std::to_string(kStamp) + ".png", 77);
+  writeText("imu0.csv", std::to_string(kStamp) + ",0.1,0.2,0.3,1,2,9.8\n");
+  fs::remove(folder_ / "cam1");
+  makeBag(folder_.string(), bag(), {});
+  const auto image = ros::openBag(bag(), {"/cam0/image_raw"}, {}).front().open()();
+  EXPECT_EQ(image->stamp_ns, kStamp);
+  EXPECT_EQ(image->load().at<std::uint8_t>(5, 7), 77);
+
+  rosbag::Bag stored(bag());
+  rosbag::View view(stored, rosbag::TopicQuery("/imu0"));
+  const auto imu = view.begin()->instantiate<sensor_msgs::Imu>();
+  EXPECT_EQ(static_cast<std::int64_t>(imu->header.stamp.toNSec()), kStamp);
+  EXPECT_EQ(imu->angular_velocity.y, 0.2);
+  EXPECT_EQ(imu->linear_acceleration.z, 9.8);
+}
+
+TEST_F(MakeBag, LeavesOutBrokenImagesAndNamesThem) {
+  writeImage("cam0/1000.png", 10);
+  writeText("cam0/2000.png", "not an image");
+  const BagContents contents =
+      makeBag(folder_.string(), bag(), [this](const std::string& text) { notices_.push_back(text); });
+  EXPECT_EQ(contents.num_images, 1U);
+  EXPECT_EQ(contents.num_skipped_images, 1U);
+  ASSERT_EQ(notices_.size(), 1U);
+  EXPECT_NE(notices_.front().find("2000.png"), std::string::npos);
+}
+
+TEST_F(MakeBag, NamesFileAndLineOfABrokenImuRow) {
+  writeImage("cam0/1000.png", 10);
+  writeText("imu0.csv", "500,0,0,0,0,0,9.81\n600,0,0\n");
+  try {
+    makeBag(folder_.string(), bag(), {});
+    FAIL() << "a short row was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("imu0.csv, line 2"), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(bag()));
+}
+
+}  // namespace
+}  // namespace tartan_calib::apps
