@@ -1,0 +1,69 @@
+#include "observations.h"
+
+#include <Eigen/Cholesky>
+#include <string>
+
+#include "tartan_calib/error.h"
+
+namespace tartan_calib::calibration {
+namespace {
+
+[[noreturn]] void failAt(std::size_t view, int camera_index, const std::string& what) {
+  throw InputError("view " + std::to_string(view) + ", cam" + std::to_string(camera_index) + ": " + what);
+}
+
+Measurement measurementOf(const observation::Corner& corner) {
+  // inverse(L L') = inverse(L)' inverse(L).
+  const Eigen::LLT<Eigen::Matrix2d> factor(corner.cov_px2);
+  return {corner.corner_id, corner.px, factor.matrixL().solve(Eigen::Matrix2d::Identity()), CornerState::kUsed};
+}
+
+void check(const Problem& problem, const observation::CameraView& image, std::size_t view) {
+  if (image.camera_index < 0 || image.camera_index >= static_cast<int>(problem.rig.cameras.size())) {
+    failAt(view, image.camera_index, "the rig has " + std::to_string(problem.rig.cameras.size()) + " cameras");
+  }
+  for (const observation::Corner& corner : image.corners) {
+    const std::string name = "corner " + std::to_string(corner.corner_id);
+    if (corner.corner_id < 0 || corner.corner_id >= static_cast<int>(problem.target_points.size())) {
+      failAt(view, image.camera_index,
+             name + " is not on the target; it has ids below " + std::to_string(problem.target_points.size()));
+    }
+    if (!corner.px.allFinite()) {
+      failAt(view, image.camera_index, name + " has a position that is not finite");
+    }
+    const Eigen::LLT<Eigen::Matrix2d> factor(corner.cov_px2);
+    if (!corner.cov_px2.allFinite() || factor.info() != Eigen::Success) {
+      failAt(view, image.camera_index, name + " has a covariance that is not positive definite");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ViewMeasurements> measurementsOf(const Problem& problem) {
+  if (problem.T_rig_target.size() != problem.views.size()) {
+    throw InputError(std::to_string(problem.views.size()) + " views with " + std::to_string(problem.T_rig_target.size()) +
+                     " board poses; each view needs one");
+  }
+  std::vector<ViewMeasurements> views;
+  std::size_t num_corners = 0;
+  for (std::size_t k = 0; k < problem.views.size(); ++k) {
+    ViewMeasurements& view = views.emplace_back();
+    for (const observation::CameraView& image : problem.views[k].cameras) {
+      check(problem, image, k);
+      CameraMeasurements& measurements = view.emplace_back();
+      measurements.camera_index = image.camera_index;
+      for (const observation::Corner& corner : image.corners) {
+        measurements.corners.push_back(measurementOf(corner));
+      }
+      num_corners += image.corners.size();
+    }
+  }
+  if (num_corners == 0) {
+    throw CalibrationError("no corners in any of " + std::to_string(problem.views.size()) +
+                           " views; nothing can be calibrated");
+  }
+  return views;
+}
+
+}  // namespace tartan_calib::calibration

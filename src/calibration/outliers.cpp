@@ -1,0 +1,180 @@
+#include "outliers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tartan_calib::calibration {
+namespace {
+
+constexpr double kMadToSigma = 1.4826;  ///< of a normal distribution
+constexpr double kMinSigma = 1e-3;      ///< [px]; no detector is better, and rounding is no outlier
+constexpr double kGrossSigma = 10.0;    ///< robust stdevs: beyond any misfit of a model, short of a wrong corner
+constexpr int kMinPoseCorners = 4;      ///< of a view: fewer leave its pose undetermined or ambiguous
+constexpr int kMaxSigmaPasses = 20;     ///< rejection lowers sigma, which rejects more; settles within a few passes
+
+/// A corner that has an image, with its error.
+struct Candidate {
+  Measurement* corner = nullptr;
+  Eigen::Vector2d error_px;  ///< measured - predicted
+};
+
+std::optional<Eigen::Vector2d> errorOf(const BatchProblem& batch, std::size_t view, int camera_index,
+                                       const Measurement& corner) {
+  const SolveState& state = batch.state();
+  return residual(state.rig, state.T_rig_target[view], batch.board().point(corner.corner_id), camera_index, corner.px);
+}
+
+double medianOf(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double robustSigma(std::vector<double>& magnitudes) {
+  return magnitudes.empty() ? kMinSigma : std::max(kMinSigma, kMadToSigma * medianOf(magnitudes));
+}
+
+/// By camera, all corners that have an image, set to used; the others are marked.
+std::vector<std::vector<Candidate>> projectableCorners(BatchProblem& batch) {
+  std::vector<std::vector<Candidate>> candidates(batch.state().rig.cameras.size());
+  for (std::size_t view = 0; view < batch.views().size(); ++view) {
+    for (CameraMeasurements& image : batch.views()[view]) {
+      for (Measurement& corner : image.corners) {
+        const std::optional<Eigen::Vector2d> error_px = errorOf(batch, view, image.camera_index, corner);
+        corner.state = error_px ? CornerState::kUsed : CornerState::kUnprojectable;
+        if (error_px) {
+          candidates[static_cast<std::size_t>(image.camera_index)].push_back({&corner, *error_px});
+        }
+      }
+    }
+  }
+  return candidates;
+}
+
+/// Marks used corners beyond the limit in u or v. True where there were any.
+bool rejectBeyond(const Eigen::Array2d& limit_px, const std::vector<Candidate>& candidates) {
+  bool is_any = false;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.corner->state == CornerState::kUsed && (candidate.error_px.array().abs() > limit_px).any()) {
+      candidate.corner->state = CornerState::kOutlier;
+      is_any = true;
+    }
+  }
+  return is_any;
+}
+
+void rejectGross(const std::vector<Candidate>& candidates) {
+  std::vector<double> magnitudes;
+  for (const Candidate& candidate : candidates) {
+    magnitudes.push_back(std::abs(candidate.error_px.x()));
+    magnitudes.push_back(std::abs(candidate.error_px.y()));
+  }
+  rejectBeyond(Eigen::Array2d::Constant(kGrossSigma * robustSigma(magnitudes)), candidates);
+}
+
+/// Population stdev per axis of the used corners' errors.
+Eigen::Array2d stdevOfUsed(const std::vector<Candidate>& candidates) {
+  double num_used = 0.0;
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  Eigen::Array2d sum_of_squares = Eigen::Array2d::Zero();
+  for (const Candidate& candidate : candidates) {
+    if (candidate.corner->state == CornerState::kUsed) {
+      num_used += 1.0;
+      sum += candidate.error_px.array();
+      sum_of_squares += candidate.error_px.array().square();
+    }
+  }
+  const double n = std::max(1.0, num_used);
+  return (sum_of_squares / n - (sum / n).square()).max(0.0).sqrt().max(kMinSigma);
+}
+
+/// Kalibr's rule, which it applies after every view it adds: here until it rejects no more.
+void rejectBySigma(double outlier_sigma, const std::vector<Candidate>& candidates) {
+  for (int pass = 0; pass < kMaxSigmaPasses; ++pass) {
+    if (!rejectBeyond(outlier_sigma * stdevOfUsed(candidates), candidates)) {
+      return;
+    }
+  }
+}
+
+void rejectUnsupported(BatchProblem& batch) {
+  for (ViewMeasurements& view : batch.views()) {
+    int num_used = 0;
+    for (const CameraMeasurements& image : view) {
+      num_used += static_cast<int>(std::count_if(image.corners.begin(), image.corners.end(), [](const Measurement& corner) {
+        return corner.state == CornerState::kUsed;
+      }));
+    }
+    if (num_used >= kMinPoseCorners) {
+      continue;
+    }
+    for (CameraMeasurements& image : view) {
+      for (Measurement& corner : image.corners) {
+        corner.state = corner.state == CornerState::kUsed ? CornerState::kUnsupported : corner.state;
+      }
+    }
+  }
+}
+
+std::vector<CornerState> cornerStates(const BatchProblem& batch) {
+  std::vector<CornerState> states;
+  for (const ViewMeasurements& view : batch.views()) {
+    for (const CameraMeasurements& image : view) {
+      for (const Measurement& corner : image.corners) {
+        states.push_back(corner.state);
+      }
+    }
+  }
+  return states;
+}
+
+std::vector<int> viewsPerCamera(const BatchProblem& batch) {
+  std::vector<int> num_views(batch.state().rig.cameras.size(), 0);
+  for (const ViewMeasurements& view : batch.views()) {
+    for (const CameraMeasurements& image : view) {
+      num_views[static_cast<std::size_t>(image.camera_index)] += image.corners.empty() ? 0 : 1;
+    }
+  }
+  return num_views;
+}
+
+}  // namespace
+
+std::vector<double> robustSigmas(const BatchProblem& batch) {
+  std::vector<std::vector<double>> magnitudes(batch.state().rig.cameras.size());
+  for (std::size_t view = 0; view < batch.views().size(); ++view) {
+    for (const CameraMeasurements& image : batch.views()[view]) {
+      for (const Measurement& corner : image.corners) {
+        const std::optional<Eigen::Vector2d> error_px = errorOf(batch, view, image.camera_index, corner);
+        if (corner.state != CornerState::kUsed || !error_px) {
+          continue;
+        }
+        const Eigen::Vector2d whitened = corner.sqrt_information * *error_px;
+        std::vector<double>& list = magnitudes[static_cast<std::size_t>(image.camera_index)];
+        list.push_back(std::abs(whitened.x()));
+        list.push_back(std::abs(whitened.y()));
+      }
+    }
+  }
+  std::vector<double> sigmas;
+  for (std::vector<double>& list : magnitudes) {
+    sigmas.push_back(robustSigma(list));
+  }
+  return sigmas;
+}
+
+bool selectCorners(const SolveOptions& options, BatchProblem& batch) {
+  const std::vector<CornerState> before = cornerStates(batch);
+  const std::vector<int> num_views = viewsPerCamera(batch);
+  const std::vector<std::vector<Candidate>> candidates = projectableCorners(batch);
+  for (std::size_t i = 0; i < candidates.size() && options.remove_outliers; ++i) {
+    rejectGross(candidates[i]);
+    if (num_views[i] > options.min_views_outlier) {
+      rejectBySigma(options.outlier_sigma, candidates[i]);
+    }
+  }
+  rejectUnsupported(batch);
+  return cornerStates(batch) != before;
+}
+
+}  // namespace tartan_calib::calibration

@@ -1,0 +1,256 @@
+#include "tartan_calib/calibration/solve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "batch_problem.h"
+#include "outliers.h"
+#include "rig_covariance.h"
+#include "tartan_calib/error.h"
+#include "tartan_calib/solver/covariance.h"
+#include "tartan_calib/solver/levenberg_marquardt.h"
+
+namespace tartan_calib::calibration {
+namespace {
+
+constexpr std::array<double, 3> kCauchyWidths = {5.0, 2.0, 1.0};  ///< in robust stdevs of each camera's residuals
+constexpr int kMaxSelections = 4;                                 ///< rounds of choosing corners and solving; two are usual
+
+/// A stage has converged when the next step would move no parameter by more than this many of its stdevs.
+constexpr double kAnnealingAccuracy = 1.0;
+constexpr double kFinalAccuracy = 1e-3;
+constexpr double kExactResidual_px = 1e-9;  ///< data without noise are fitted to this rms
+
+struct UsedCorners {
+  int num_corners = 0;
+  double sum_of_squares_px2 = 0.0;
+  double sum_of_whitened_squares = 0.0;
+};
+
+solver::LinearSolver solverChoice(LinearSolver choice) {
+  switch (choice) {
+    case LinearSolver::kSchur:
+      return solver::LinearSolver::kSchur;
+    case LinearSolver::kSparse:
+      return solver::LinearSolver::kSparse;
+    case LinearSolver::kAuto:
+      break;
+  }
+  return solver::LinearSolver::kAuto;
+}
+
+SolveStatus statusOf(solver::Status status) {
+  switch (status) {
+    case solver::Status::kConverged:
+      return SolveStatus::kConverged;
+    case solver::Status::kMaxIterations:
+      return SolveStatus::kMaxIterations;
+    case solver::Status::kCancelled:
+      return SolveStatus::kCancelled;
+    case solver::Status::kStalled:
+      break;
+  }
+  return SolveStatus::kStalled;
+}
+
+UsedCorners usedCorners(const BatchProblem& batch) {
+  UsedCorners used;
+  const SolveState& state = batch.state();
+  for (std::size_t view = 0; view < batch.views().size(); ++view) {
+    for (const CameraMeasurements& image : batch.views()[view]) {
+      for (const Measurement& corner : image.corners) {
+        const std::optional<Eigen::Vector2d> error_px = residual(
+            state.rig, state.T_rig_target[view], batch.board().point(corner.corner_id), image.camera_index, corner.px);
+        if (corner.state == CornerState::kUsed && error_px) {
+          ++used.num_corners;
+          used.sum_of_squares_px2 += error_px->squaredNorm();
+          used.sum_of_whitened_squares += (corner.sqrt_information * *error_px).squaredNorm();
+        }
+      }
+    }
+  }
+  return used;
+}
+
+/// The stages of a solve and what they leave behind.
+class BatchSolve {
+ public:
+  BatchSolve(const Problem& problem, const SolveOptions& options)
+      : problem_(problem), options_(options), batch_(problem, options) {}
+
+  Solution run() {
+    anneal();
+    leastSquares();
+    keepStartOfUnsolvedViews();
+    return solution();
+  }
+
+ private:
+  bool isCancelled() const { return status_ == SolveStatus::kCancelled; }
+  int numAnnealingStages() const { return options_.anneal_robust_loss ? static_cast<int>(kCauchyWidths.size()) : 0; }
+
+  /// Robust losses of falling width, each as a fraction of what the residuals are by then.
+  void anneal() {
+    for (int stage = 0; stage < numAnnealingStages() && !isCancelled(); ++stage) {
+      std::vector<RobustLoss> losses;
+      for (const double sigma : robustSigmas(batch_)) {
+        losses.push_back({RobustLoss::Kind::kCauchy, kCauchyWidths[static_cast<std::size_t>(stage)] * sigma});
+      }
+      batch_.setLosses(std::move(losses));
+      minimize(stage, kAnnealingAccuracy);
+    }
+  }
+
+  /// Chooses corners and solves until the choice stays the same.
+  void leastSquares() {
+    const RobustLoss loss{options_.use_blake_zisserman ? RobustLoss::Kind::kBlakeZisserman : RobustLoss::Kind::kLeastSquares,
+                          1.0};
+    batch_.setLosses(std::vector<RobustLoss>(problem_.rig.cameras.size(), loss));
+    const int num_selections = options_.final_filtering ? kMaxSelections : 1;
+    for (int i = 0; i < num_selections && !isCancelled(); ++i) {
+      if (!selectCorners(options_, batch_) && i > 0) {
+        return;
+      }
+      if (usedCorners(batch_).num_corners == 0) {
+        throw CalibrationError("no corner fits the start of the solve; the start values are too far off");
+      }
+      minimize(numAnnealingStages() + i, kFinalAccuracy);
+    }
+  }
+
+  void minimize(int stage, double accuracy) {
+    const double num_residuals = 2.0 * std::max(1, usedCorners(batch_).num_corners);
+    solver::Options options;
+    options.linear_solver = solverChoice(options_.linear_solver);
+    options.num_threads = options_.num_threads;
+    options.max_iterations = options_.max_iterations;
+    // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
+    options.relative_tolerance = accuracy * accuracy / num_residuals;
+    options.absolute_tolerance = 0.5 * num_residuals * kExactResidual_px * kExactResidual_px;
+    if (options_.progress) {
+      options.progress = [&, stage, num_residuals](int iteration, double cost) {
+        const int num_stages = numAnnealingStages() + (options_.final_filtering ? kMaxSelections : 1);
+        return options_.progress({stage, num_stages, iteration, std::sqrt(4.0 * cost / num_residuals)});
+      };
+    }
+    const solver::Summary summary = solver::minimize(batch_, options);
+    iterations_ += summary.iterations;
+    status_ = statusOf(summary.status);
+  }
+
+  static bool isSolved(const ViewMeasurements& view) {
+    return std::any_of(view.begin(), view.end(), [](const CameraMeasurements& image) {
+      return std::any_of(image.corners.begin(), image.corners.end(),
+                         [](const Measurement& corner) { return corner.state == CornerState::kUsed; });
+    });
+  }
+
+  void keepStartOfUnsolvedViews() {
+    for (std::size_t view = 0; view < batch_.views().size(); ++view) {
+      if (!isSolved(batch_.views()[view])) {
+        batch_.setPose(view, problem_.T_rig_target[view]);
+      }
+    }
+  }
+
+  Solution solution() const {
+    Solution solution;
+    solution.status = status_;
+    solution.iterations = iterations_;
+    solution.rig = batch_.state().rig;
+    solution.T_rig_target = batch_.state().T_rig_target;
+    solution.board_warp_m = batch_.state().board_warp_m;
+    copyCorners(solution);
+    if (!isCancelled()) {
+      estimateUncertainty(solution);
+    }
+    return solution;
+  }
+
+  void copyCorners(Solution& solution) const {
+    solution.views = problem_.views;
+    solution.counts.resize(problem_.rig.cameras.size());
+    for (std::size_t view = 0; view < solution.views.size(); ++view) {
+      const ViewMeasurements& measured = batch_.views()[view];
+      for (std::size_t i = 0; i < measured.size(); ++i) {
+        CornerCounts& counts = solution.counts[static_cast<std::size_t>(measured[i].camera_index)];
+        for (std::size_t j = 0; j < measured[i].corners.size(); ++j) {
+          const CornerState state = measured[i].corners[j].state;
+          solution.views[view].cameras[i].corners[j].used = state == CornerState::kUsed;
+          count(state, counts);
+        }
+      }
+      if (!isSolved(measured)) {
+        solution.unsolved_views.push_back(static_cast<int>(view));
+      }
+    }
+  }
+
+  static void count(CornerState state, CornerCounts& counts) {
+    switch (state) {
+      case CornerState::kUsed:
+        ++counts.used;
+        break;
+      case CornerState::kOutlier:
+        ++counts.outliers;
+        break;
+      case CornerState::kUnprojectable:
+        ++counts.unprojectable;
+        break;
+      case CornerState::kUnsupported:
+        ++counts.unsupported;
+        break;
+    }
+  }
+
+  void estimateUncertainty(Solution& solution) const {
+    const solver::SharedCovariance shared = solver::sharedCovariance(batch_, options_.num_threads);
+    const UsedCorners used = usedCorners(batch_);
+    const double redundancy = std::max(1.0, 2.0 * used.num_corners - shared.rank - shared.block_rank);
+    solution.sigma_px = std::sqrt(used.sum_of_squares_px2 / redundancy);
+    solution.sigma_whitened = std::sqrt(used.sum_of_whitened_squares / redundancy);
+    solution.covariance = solution.sigma_whitened * solution.sigma_whitened *
+                          baselineCovariance(solution.rig, batch_.layout(), shared.covariance);
+    const auto name = [&](int i, const std::string& why) {
+      const std::string entry = unknownName(solution.rig, batch_.layout(), i) + why;
+      if (solution.undetermined.empty() || solution.undetermined.back() != entry) {
+        solution.undetermined.push_back(entry);
+      }
+    };
+    for (const int i : shared.undetermined) {
+      name(i, "");
+    }
+    for (const int i : shared.at_bound) {
+      name(i, " (at its bound)");
+    }
+  }
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  BatchProblem batch_;
+  SolveStatus status_ = SolveStatus::kStalled;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+Solution solve(const Problem& problem, const SolveOptions& options) { return BatchSolve(problem, options).run(); }
+
+std::optional<Eigen::Vector2d> residual(const Rig& rig, const geometry::Rigid3& T_rig_target,
+                                        const Eigen::Vector3d& p_target, int camera_index,
+                                        const Eigen::Vector2d& measured_px) {
+  const RigCamera& rig_camera = rig.cameras[static_cast<std::size_t>(camera_index)];
+  const std::optional<Eigen::Vector2d> predicted_px =
+      camera::project(rig_camera.camera.model, rig_camera.T_cam_rig * (T_rig_target * p_target));
+  return predicted_px ? std::optional<Eigen::Vector2d>(measured_px - *predicted_px) : std::nullopt;
+}
+
+std::vector<Eigen::Vector3d> warpedPoints(const std::vector<Eigen::Vector3d>& target_points,
+                                          const Eigen::Vector2d& board_warp_m) {
+  WarpedBoard board(target_points);
+  board.bend(board_warp_m);
+  return board.points();
+}
+
+}  // namespace tartan_calib::calibration

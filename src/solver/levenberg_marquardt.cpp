@@ -1,0 +1,156 @@
+#include "tartan_calib/solver/levenberg_marquardt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "normal_equations.h"
+#include "schur.h"
+#include "sparse.h"
+
+namespace tartan_calib::solver {
+namespace {
+
+constexpr double kInitialDamping = 1e-6;  ///< relative to diag(H): close to Gauss-Newton, as starts are usually good
+constexpr double kMinDamping = 1e-12;     ///< keeps undetermined directions solvable
+constexpr double kNewtonDamping = 1e-9;   ///< up to here a step counts as a Gauss-Newton step
+constexpr double kMaxDamping = 1e12;
+constexpr double kDampingDecrease = 0.1;
+constexpr double kDampingIncrease = 10.0;  ///< grows with every rejection in a row
+constexpr double kGoodGain = 0.5;          ///< actual over promised change of cost from which on damping falls
+
+/// A step with what the quadratic model promises.
+struct Candidate {
+  Step step;
+  double promised = 0.0;  ///< decrease of the cost
+};
+
+class Minimizer {
+ public:
+  Minimizer(BlockProblem& problem, const Options& options) : problem_(problem), options_(options) {}
+
+  Summary run() {
+    linearize();
+    summary_.initial_cost = equations_.cost;
+    while (!is_finished_) {
+      iterate();
+    }
+    summary_.final_cost = equations_.cost;
+    return summary_;
+  }
+
+ private:
+  void linearize() { equations_ = linearizeAll(problem_, options_.num_threads); }
+
+  void finish(Status status) {
+    summary_.status = status;
+    is_finished_ = true;
+  }
+
+  void iterate() {
+    const std::optional<Candidate> candidate = propose();
+    if (!candidate) {
+      reject();
+    } else if (candidate->promised <= tolerance()) {
+      tryUndamped();
+    } else if (!tryStep(*candidate)) {
+      reject();
+    }
+  }
+
+  double tolerance() const { return std::max(options_.absolute_tolerance, options_.relative_tolerance * equations_.cost); }
+
+  /// Damping makes any promise small, so that only an almost undamped step can tell that there is nothing left to gain.
+  void tryUndamped() {
+    if (damping_ <= kNewtonDamping) {
+      finish(Status::kConverged);
+    } else if (undamped_failed_) {
+      finish(Status::kStalled);
+    } else {
+      damping_ = kNewtonDamping;
+    }
+  }
+
+  bool tryStep(const Candidate& candidate) {
+    problem_.move(candidate.step);
+    const double cost = totalCost(problem_, options_.num_threads);
+    const double gain = (equations_.cost - cost) / candidate.promised;
+    if (!(gain > 0.0)) {
+      problem_.undo();
+      return false;
+    }
+    if (gain > kGoodGain) {
+      damping_ = std::max(kMinDamping, damping_ * kDampingDecrease);
+    }
+    increase_ = kDampingIncrease;
+    undamped_failed_ = false;
+    linearize();
+    ++summary_.iterations;
+    if (options_.progress && !options_.progress(summary_.iterations, equations_.cost)) {
+      finish(Status::kCancelled);
+    } else if (summary_.iterations >= options_.max_iterations) {
+      finish(Status::kMaxIterations);
+    }
+    return true;
+  }
+
+  void reject() {
+    undamped_failed_ = undamped_failed_ || damping_ <= kNewtonDamping;
+    damping_ *= increase_;
+    increase_ *= kDampingIncrease;
+    if (damping_ > kMaxDamping) {
+      finish(Status::kStalled);
+    }
+  }
+
+  std::optional<Step> solve(const Prescribed& prescribed) const {
+    return useSparse() ? solveSparse(equations_, damping_, prescribed)
+                       : solveSchur(equations_, damping_, prescribed, options_.num_threads);
+  }
+
+  bool useSparse() const { return options_.linear_solver == LinearSolver::kSparse; }
+
+  /// The damped step within the limits: unknowns that would pass a limit are sent to it, and the others solved for anew.
+  std::optional<Candidate> propose() const {
+    const StepLimits limits = problem_.stepLimits();
+    Prescribed prescribed = holdActiveBounds(equations_, limits);
+    while (true) {
+      std::optional<Step> step = solve(prescribed);
+      if (!step || !step->shared.allFinite()) {
+        return std::nullopt;
+      }
+      if (!prescribeViolations(*step, limits, prescribed)) {
+        const double promised = -modelChange(equations_, *step);
+        return Candidate{std::move(*step), promised};
+      }
+    }
+  }
+
+  static bool prescribeViolations(const Step& step, const StepLimits& limits, Prescribed& prescribed) {
+    bool is_violated = false;
+    for (const int i : prescribed.freeIndices()) {
+      const double within = std::clamp(step.shared(i), limits.lower(i), limits.upper(i));
+      if (within != step.shared(i)) {
+        prescribed.is_prescribed[static_cast<std::size_t>(i)] = true;
+        prescribed.step(i) = within;
+        is_violated = true;
+      }
+    }
+    return is_violated;
+  }
+
+  BlockProblem& problem_;
+  const Options& options_;
+  NormalEquations equations_;
+  Summary summary_;
+  double damping_ = kInitialDamping;
+  double increase_ = kDampingIncrease;
+  bool undamped_failed_ = false;
+  bool is_finished_ = false;
+};
+
+}  // namespace
+
+Summary minimize(BlockProblem& problem, const Options& options) { return Minimizer(problem, options).run(); }
+
+}  // namespace tartan_calib::solver
