@@ -48,6 +48,7 @@ struct CameraCorners {
   std::size_t num_other_size = 0;               ///< skipped: not of the size that most images have
   std::size_t num_unreadable = 0;               ///< skipped: could not be decoded
   std::string unreadable_reason;                ///< of the first one
+  std::size_t num_same_stamp = 0;               ///< skipped: same stamp as the image before
   detection::DetectionCounts counts;            ///< summed over the images
 };
 
@@ -84,9 +85,7 @@ struct CameraReport {
   std::string topic;
   std::size_t num_images = 0;           ///< looked at
   std::size_t num_images_detected = 0;  ///< with at least one corner
-  std::size_t num_images_used = 0;      ///< in the solve
-  std::size_t num_other_size = 0;
-  std::size_t num_unreadable = 0;
+  std::size_t num_images_used = 0;      ///< with a corner that the last solve used
   detection::DetectionCounts counts;
   calibration::CameraStatistics statistics;
 };

@@ -1,0 +1,99 @@
+#include "calibration_options_yaml.h"
+
+#include "number_text.h"
+
+namespace tartan_calib::io {
+namespace {
+
+using calibration::LinearSolver;
+using pipeline::CalibrateOptions;
+
+constexpr double kSecondsPerNanosecond = 1e-9;
+
+std::string yamlBool(bool value) { return value ? "true" : "false"; }
+
+std::string linearSolverName(LinearSolver solver) {
+  switch (solver) {
+    case LinearSolver::kAuto:
+      return "auto";
+    case LinearSolver::kSchur:
+      return "schur";
+    case LinearSolver::kSparse:
+      return "sparse";
+  }
+  return "";
+}
+
+void addSolveOptions(YamlWriter& yaml, const calibration::SolveOptions& solve) {
+  yaml.open("solve");
+  yaml.add("linear_solver", linearSolverName(solve.linear_solver));
+  yaml.add("max_iterations", std::to_string(solve.max_iterations));
+  yaml.add("fix_intrinsics", yamlBool(solve.fix_intrinsics));
+  yaml.add("fix_extrinsics", yamlBool(solve.fix_extrinsics));
+  yaml.add("fixed_cameras", yamlFlow(solve.fixed_cameras));
+  yaml.add("estimate_board_warp", yamlBool(solve.estimate_board_warp));
+  yaml.add("anneal_robust_loss", yamlBool(solve.anneal_robust_loss));
+  yaml.add("use_blake_zisserman", yamlBool(solve.use_blake_zisserman));
+  yaml.add("remove_outliers", yamlBool(solve.remove_outliers));
+  yaml.add("outlier_sigma", yamlFloat(solve.outlier_sigma));
+  yaml.add("min_views_outlier", std::to_string(solve.min_views_outlier));
+  yaml.add("final_filtering", yamlBool(solve.final_filtering));
+  yaml.close();
+}
+
+struct AddTarget {
+  YamlWriter& yaml;
+
+  void operator()(const target::AprilGrid& grid) const {
+    yaml.add("target_type", "aprilgrid");
+    yaml.add("tagCols", std::to_string(grid.tag_cols));
+    yaml.add("tagRows", std::to_string(grid.tag_rows));
+    yaml.add("tagSize", yamlFloat(grid.tag_size_m));
+    yaml.add("tagSpacing", yamlFloat(grid.tag_spacing_ratio));
+    yaml.add("tagFamily", yamlString(grid.family));
+    yaml.add("codeOffset", std::to_string(grid.code_offset));
+    yaml.add("tagBorder", std::to_string(grid.border_cells));
+  }
+  void operator()(const target::Checkerboard& board) const {
+    yaml.add("target_type", "checkerboard");
+    yaml.add("targetCols", std::to_string(board.cols));
+    yaml.add("targetRows", std::to_string(board.rows));
+    yaml.add("rowSpacingMeters", yamlFloat(board.row_spacing_m));
+    yaml.add("colSpacingMeters", yamlFloat(board.col_spacing_m));
+  }
+  void operator()(const target::CircleGrid& grid) const {
+    yaml.add("target_type", "circlegrid");
+    yaml.add("targetCols", std::to_string(grid.cols));
+    yaml.add("targetRows", std::to_string(grid.rows));
+    yaml.add("spacingMeters", yamlFloat(grid.spacing_m));
+    yaml.add("asymmetricGrid", yamlBool(grid.asymmetric));
+  }
+};
+
+}  // namespace
+
+void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target::Target& target) {
+  yaml.open("options");
+  yaml.add("models", yamlFlow(options.models));
+  yaml.add("focal_hint_px", options.focal_hint_px ? yamlFloat(*options.focal_hint_px) : "null");
+  yaml.add("has_known_rig", yamlBool(options.known_rig.has_value()));
+  if (const auto* grid = std::get_if<target::AprilGrid>(&target)) {
+    yaml.add("min_tags", std::to_string(options.min_tags.value_or(pipeline::minTags(*grid))));
+  }
+  yaml.add("approx_sync_s", yamlFloat(static_cast<double>(options.approx_sync_ns) * kSecondsPerNanosecond));
+  yaml.open("detector");
+  yaml.add("min_border_distance_px", yamlFloat(options.detector.min_border_distance_px));
+  yaml.add("max_hamming", std::to_string(options.detector.max_hamming));
+  yaml.add("max_refine_shift_px", yamlFloat(options.detector.max_refine_shift_px));
+  yaml.close();
+  addSolveOptions(yaml, options.solve);
+  yaml.close();
+}
+
+void addTarget(YamlWriter& yaml, const target::Target& target) {
+  yaml.open("target");
+  std::visit(AddTarget{yaml}, target);
+  yaml.close();
+}
+
+}  // namespace tartan_calib::io

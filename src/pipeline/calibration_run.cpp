@@ -1,0 +1,197 @@
+#include "calibration_run.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "check_options.h"
+#include "listen.h"
+#include "tartan_calib/calibration/initialize_camera.h"
+#include "tartan_calib/calibration/initialize_rig.h"
+#include "tartan_calib/calibration/synchronize.h"
+#include "tartan_calib/pipeline/warnings.h"
+
+namespace tartan_calib::pipeline {
+namespace {
+
+using observation::CameraView;
+using observation::Corner;
+
+constexpr std::size_t kMinCorners = 4;  ///< fewer determine no pose
+
+/// Why no image of a camera can take part, and what helps.
+std::string noUsableImages(const CameraCorners& corners, const target::Target& target, int min_tags) {
+  std::string text = "none of its " + std::to_string(corners.num_images) + " images shows ";
+  const auto* grid = std::get_if<target::AprilGrid>(&target);
+  if (corners.images.empty() || grid == nullptr) {
+    text += "the target: check target file, focus and exposure";
+  } else {
+    int most = 0;
+    for (const CameraView& image : corners.images) {
+      most = std::max(most, countTags(*grid, image.corners));
+    }
+    text += std::to_string(min_tags) + " tags, the smallest number for taking part; the best shows " + std::to_string(most) +
+            ": come closer with the board, or check the target's tagRows and tagCols";
+  }
+  return text;
+}
+
+}  // namespace
+
+CalibrationRun::CalibrationRun(std::size_t num_cameras, const target::Target& target, const CalibrateOptions& options,
+                               const Listener& listener)
+    : target_(target), options_(options), listener_(listener), target_points_(target::cornerPoints(target)) {
+  checkOptions(options, num_cameras);
+  result_.target = target;
+}
+
+void CalibrationRun::warn(const std::string& text) {
+  result_.warnings.push_back(text);
+  if (listener_.warning) {
+    listener_.warning(text);
+  }
+}
+
+void CalibrationRun::begin(Stage stage, int camera_index) {
+  throwIfCancelled(listener_);
+  stage_ = Progress{stage, camera_index, 0, 1};
+  stage_begin_ = Clock::now();
+  report(listener_, stage_);
+}
+
+void CalibrationRun::end() {
+  const std::chrono::duration<double> taken = Clock::now() - stage_begin_;
+  result_.times.push_back({stage_.stage, stage_.camera_index, taken.count()});
+  stage_.done = stage_.total = 1;
+  report(listener_, stage_);
+}
+
+std::vector<CameraView> CalibrationRun::usableImages(const CameraCorners& corners, int camera_index) const {
+  const auto* grid = std::get_if<target::AprilGrid>(&target_);
+  const int min_tags = grid == nullptr ? 0 : options_.min_tags.value_or(minTags(*grid));
+  std::vector<CameraView> usable;
+  for (const CameraView& image : corners.images) {
+    if (image.corners.size() < kMinCorners || (grid != nullptr && countTags(*grid, image.corners) < min_tags)) {
+      continue;
+    }
+    usable.push_back(image);
+    usable.back().camera_index = camera_index;
+    for (Corner& corner : usable.back().corners) {
+      corner.used = true;
+    }
+  }
+  if (usable.empty()) {
+    throw CalibrationError(noUsableImages(corners, target_, min_tags));
+  }
+  return usable;
+}
+
+void CalibrationRun::addCamera(const CameraCorners& corners, std::optional<double> seconds) {
+  const int index = static_cast<int>(corners_.size());
+  checkCorners(corners, index, static_cast<int>(target_points_.size()));
+  if (seconds) {
+    result_.times.push_back({Stage::kDetect, index, *seconds});
+  }
+  for (const std::string& warning : detectionWarnings(corners, index, target_)) {
+    warn(warning);
+  }
+  begin(Stage::kStartCamera, index);
+  const calibration::CameraSpec spec = cameraSpec(options_, corners, index);
+  try {
+    usable_.push_back(usableImages(corners, index));
+    const calibration::CameraStart start = calibration::initializeCamera(spec, target_points_, usable_.back());
+    for (const std::string& warning : start.warnings) {
+      warn("cam" + std::to_string(index) + ": " + warning);
+    }
+    started_.push_back(start.camera);
+  } catch (const CalibrationError& error) {
+    throw CalibrationError("Could not initialize the intrinsics for camera with topic: " + corners.topic + ": " +
+                           error.what());
+  }
+  corners_.push_back(corners);
+  end();
+  if (listener_.camera_started) {
+    listener_.camera_started(index, started_.back());
+  }
+}
+
+calibration::Problem CalibrationRun::startRig() {
+  begin(Stage::kStartRig);
+  const std::vector<observation::View> views = calibration::synchronize(usable_, options_.approx_sync_ns);
+  result_.graph = calibration::cameraGraph(views, static_cast<int>(started_.size()));
+  calibration::Problem problem = calibration::initializeRig(started_, target_points_, views, options_.known_rig);
+  result_.num_dropped_views = static_cast<int>(views.size() - problem.views.size());
+  end();
+  if (listener_.rig_started) {
+    listener_.rig_started(problem);
+  }
+  return problem;
+}
+
+void CalibrationRun::solve(const calibration::Problem& problem) {
+  begin(Stage::kSolve);
+  calibration::SolveOptions options = options_.solve;
+  options.num_threads = options_.num_threads;
+  Progress progress{Stage::kSolve, -1, 0, 0};
+  options.progress = [this, &progress](const calibration::SolveProgress& /*iteration*/) {
+    ++progress.done;
+    report(listener_, progress);
+    return !isCancelled(listener_);
+  };
+  result_.solution = calibration::solve(problem, options);
+  if (result_.solution.status == calibration::SolveStatus::kCancelled) {
+    throw Cancelled("the calibration was stopped");
+  }
+  end();
+}
+
+void CalibrationRun::collectUnused() {
+  std::set<std::pair<int, std::int64_t>> in_solution;
+  for (const observation::View& view : result_.solution.views) {
+    for (const CameraView& image : view.cameras) {
+      in_solution.emplace(image.camera_index, image.stamp_ns);
+    }
+  }
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    for (CameraView& image : corners_[i].images) {
+      image.camera_index = static_cast<int>(i);
+      if (in_solution.count({image.camera_index, image.stamp_ns}) > 0) {
+        continue;
+      }
+      for (Corner& corner : image.corners) {
+        corner.used = false;
+      }
+      result_.unused_images.push_back(image);
+    }
+  }
+}
+
+void CalibrationRun::countUsedImages() {
+  const auto is_used = [](const Corner& corner) { return corner.used; };
+  for (const observation::View& view : result_.solution.views) {
+    for (const CameraView& image : view.cameras) {
+      const bool has_used = std::any_of(image.corners.begin(), image.corners.end(), is_used);
+      result_.cameras[static_cast<std::size_t>(image.camera_index)].num_images_used += has_used ? 1 : 0;
+    }
+  }
+}
+
+CalibrationResult CalibrationRun::finish() {
+  solve(startRig());
+  begin(Stage::kStatistics);
+  const std::vector<calibration::CameraStatistics> statistics =
+      calibration::residualStatistics(result_.solution, target_points_);
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const CameraCorners& corners = corners_[i];
+    result_.cameras.push_back({corners.topic, corners.num_images, corners.images.size(), 0, corners.counts, statistics[i]});
+  }
+  collectUnused();
+  countUsedImages();
+  for (const std::string& warning : resultWarnings(result_)) {
+    warn(warning);
+  }
+  end();
+  return std::move(result_);
+}
+
+}  // namespace tartan_calib::pipeline

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include "tartan_calib/pipeline/calibrate.h"
+
+namespace tartan_calib::pipeline {
+
+/// One calibration from corners: cameras are added one by one, each started alone, then all are solved together.
+class CalibrationRun {
+ public:
+  /// Throws InputError where the options do not fit that number of cameras.
+  CalibrationRun(std::size_t num_cameras, const target::Target& target, const CalibrateOptions& options,
+                 const Listener& listener);
+
+  /// Starts the next camera. `seconds`: what its detection took.
+  void addCamera(const CameraCorners& corners, std::optional<double> seconds);
+
+  CalibrationResult finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void warn(const std::string& text);
+  void begin(Stage stage, int camera_index = -1);
+  void end();
+  std::vector<observation::CameraView> usableImages(const CameraCorners& corners, int camera_index) const;
+  calibration::Problem startRig();
+  void solve(const calibration::Problem& problem);
+  void collectUnused();
+  void countUsedImages();
+
+  const target::Target& target_;
+  const CalibrateOptions& options_;
+  const Listener& listener_;
+  const std::vector<Eigen::Vector3d> target_points_;
+
+  std::vector<CameraCorners> corners_;                        ///< by camera, all images
+  std::vector<std::vector<observation::CameraView>> usable_;  ///< by camera, those that take part
+  std::vector<camera::Camera> started_;
+  CalibrationResult result_;
+  Progress stage_;
+  Clock::time_point stage_begin_;
+};
+
+}  // namespace tartan_calib::pipeline

@@ -1,0 +1,238 @@
+#include "tartan_calib/pipeline/warnings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+
+namespace tartan_calib::pipeline {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegreesPerRadian = 180.0 / kPi;
+
+/// Below these a calibration stands on little; 20 to 30 views are usual.
+constexpr int kFewViews = 10;
+constexpr int kFewCorners = 600;
+/// Distance of the principal point from the image centre, over the image's width or height, above which a lens is unusual
+/// and a weak geometry of the views more likely.
+constexpr double kFarPrincipalPoint_ratio = 0.15;
+/// Share of the cells of a grid over the image that hold a corner. A circular fisheye fills about 0.6 of a 4:3 image.
+constexpr double kPoorCoverage_ratio = 0.35;
+constexpr int kCoverageCells = 10;  ///< per row and column
+/// Share of rejected corners above which something is wrong besides single corners.
+constexpr double kManyOutliers_ratio = 0.05;
+/// No lens that its model fits leaves so much.
+constexpr double kLargeRms_px = 1.0;
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+std::string format(const char* pattern, ...) {
+  std::array<char, 512> text{};
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text.data(), text.size(), pattern, arguments);
+  va_end(arguments);
+  return text.data();
+}
+
+std::string camName(int camera_index) { return "cam" + std::to_string(camera_index); }
+
+double coverage(const CalibrationResult& result, int camera_index) {
+  const camera::Camera& camera = result.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera;
+  std::array<bool, kCoverageCells * kCoverageCells> cells{};
+  const auto cell = [](double px, int size) {
+    return std::clamp(static_cast<int>((px + 0.5) / size * kCoverageCells), 0, kCoverageCells - 1);
+  };
+  for (const observation::View& view : result.solution.views) {
+    for (const observation::CameraView& image : view.cameras) {
+      for (const observation::Corner& corner : image.corners) {
+        if (image.camera_index == camera_index && corner.used) {
+          const int row = cell(corner.px.y(), camera.height);
+          cells[static_cast<std::size_t>(row * kCoverageCells + cell(corner.px.x(), camera.width))] = true;
+        }
+      }
+    }
+  }
+  return static_cast<double>(std::count(cells.begin(), cells.end(), true)) / static_cast<double>(cells.size());
+}
+
+/// Collects the warnings about one camera.
+class CameraWarnings {
+ public:
+  CameraWarnings(const CalibrationResult& result, int camera_index)
+      : result_(result),
+        index_(camera_index),
+        statistics_(result.cameras[static_cast<std::size_t>(camera_index)].statistics),
+        camera_(result.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera) {}
+
+  std::vector<std::string> collect() {
+    checkAmount();
+    checkCoverage();
+    checkResiduals();
+    checkPrincipalPoint();
+    checkKalibrLimits();
+    if (const std::optional<std::string> note = hemisphereNote(result_, index_)) {
+      warnings_.push_back(*note);
+    }
+    return std::move(warnings_);
+  }
+
+ private:
+  void add(const std::string& text) { warnings_.push_back(camName(index_) + ": " + text); }
+
+  void checkAmount() {
+    if (statistics_.num_views < kFewViews || statistics_.num_corners < kFewCorners) {
+      add(format("only %d views with %d corners: the result is uncertain; record 20 views or more", statistics_.num_views,
+                 statistics_.num_corners));
+    }
+  }
+
+  void checkCoverage() {
+    const double covered = coverage(result_, index_);
+    if (covered < kPoorCoverage_ratio) {
+      add(format("corners cover only %.0f %% of the image; elsewhere the model is extrapolated: move the board to the edges",
+                 100.0 * covered));
+    }
+  }
+
+  void checkResiduals() {
+    if (statistics_.rms_px > kLargeRms_px) {
+      add(format("the residuals are large (rms %.2f px): check the target's sizes, the model and the shutter",
+                 statistics_.rms_px));
+    }
+    const calibration::CornerCounts& counts = result_.solution.counts[static_cast<std::size_t>(index_)];
+    const int rejected = counts.outliers + counts.unprojectable + counts.unsupported;
+    if (rejected > kManyOutliers_ratio * (rejected + counts.used)) {
+      add(format(
+          "%d of %d corners were rejected (%d outliers, %d that the model cannot project, %d in views without support)",
+          rejected, rejected + counts.used, counts.outliers, counts.unprojectable, counts.unsupported));
+    }
+  }
+
+  void checkPrincipalPoint() {
+    const Eigen::Vector2d px = principalPoint();
+    const double off_x = std::abs(px.x() - 0.5 * (camera_.width - 1)) / camera_.width;
+    const double off_y = std::abs(px.y() - 0.5 * (camera_.height - 1)) / camera_.height;
+    if (std::max(off_x, off_y) > kFarPrincipalPoint_ratio) {
+      add(format("the principal point (%.1f, %.1f) is far from the centre of the %dx%d image", px.x(), px.y(), camera_.width,
+                 camera_.height));
+    }
+  }
+
+  /// What Kalibr's own writer refuses; its reader has the same limits.
+  void checkKalibrLimits() {
+    const std::string refused = " is outside of what Kalibr accepts in a camchain";
+    const Eigen::VectorXd parameters = camera::parameters(camera_.model);
+    const std::string model = camera::kalibrModel(camera_.model);
+    if (principalPoint().minCoeff() < 0.0) {
+      add("the principal point" + refused);
+    }
+    if (model == "omni" && parameters(0) < 0.0) {
+      add("xi" + refused);
+    }
+    const bool is_alpha_out = (model == "eucm" && (parameters(0) < 0.0 || parameters(0) >= 1.0)) ||
+                              (model == "ds" && (parameters(1) < 0.0 || parameters(1) >= 1.0));
+    if (is_alpha_out) {
+      add("alpha" + refused);
+    }
+    if (model == "eucm" && parameters(1) < 0.0) {
+      add("beta" + refused);
+    }
+  }
+
+  Eigen::Vector2d principalPoint() const {
+    return camera::parameters(camera_.model).segment<2>(camera::focalIndex(camera_.model) + 2);
+  }
+
+  const CalibrationResult& result_;
+  const int index_;
+  const calibration::CameraStatistics& statistics_;
+  const camera::Camera& camera_;
+  std::vector<std::string> warnings_;
+};
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    text += (text.empty() ? "" : ", ") + part;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index) {
+  const auto at = static_cast<std::size_t>(camera_index);
+  const camera::CameraModel& model = result.solution.rig.cameras[at].camera.model;
+  const double max_angle_rad = result.cameras[at].statistics.max_polar_angle_rad;
+  if (camera::kalibrModel(model) != "pinhole" || max_angle_rad <= 0.5 * kPi) {
+    return std::nullopt;
+  }
+  return camName(camera_index) +
+         format(
+             ": corners to %.1f degrees from the axis were used; %s is on the true angle here, Kalibr and OpenCV stop at 90",
+             max_angle_rad * kDegreesPerRadian, camera::modelName(model).c_str());
+}
+
+std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::string& text) { warnings.push_back(camName(camera_index) + ": " + text); };
+  if (corners.num_other_size > 0) {
+    add(format("%zu images are not %dx%d as the others and were skipped", corners.num_other_size, corners.width,
+               corners.height));
+  }
+  if (corners.num_unreadable > 0) {
+    add(std::to_string(corners.num_unreadable) +
+        " images cannot be read and were skipped; the first: " + corners.unreadable_reason);
+  }
+  if (corners.num_same_stamp > 0) {
+    add(format("%zu images have the stamp of the image before and were skipped", corners.num_same_stamp));
+  }
+  const detection::DetectionCounts& counts = corners.counts;
+  if (counts.duplicate_tags > 0) {
+    add(format("%d tags were dropped because their id was there twice in an image: is a second board in view?",
+               counts.duplicate_tags));
+  }
+  if (counts.foreign_tags > 0) {
+    add(format(
+        "%d tags were dropped that the target does not have at that place: are tagRows, tagCols and codeOffset right?",
+        counts.foreign_tags));
+  }
+  if (counts.mirrored_tags > 0) {
+    add(format("%d tags were dropped because they are mirrored: is the image flipped, or the board seen in a mirror?",
+               counts.mirrored_tags));
+  }
+  const auto* grid = std::get_if<target::AprilGrid>(&target);
+  if (grid != nullptr && counts.other_border_tags > counts.tags) {
+    add(format("the tags have a border of %d cells, the target says %d: set tagBorder: %d in the target file",
+               3 - grid->border_cells, grid->border_cells, 3 - grid->border_cells));
+  }
+  return warnings;
+}
+
+std::vector<std::string> resultWarnings(const CalibrationResult& result) {
+  std::vector<std::string> warnings;
+  const auto append = [&warnings](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    append(CameraWarnings(result, static_cast<int>(i)).collect());
+  }
+  if (result.num_dropped_views > 0) {
+    warnings.push_back(
+        format("%d views were left out because no pose of the board explains them", result.num_dropped_views));
+  }
+  if (result.solution.status != calibration::SolveStatus::kConverged) {
+    warnings.push_back(format("the solver did not converge within %d iterations", result.solution.iterations));
+  }
+  if (!result.solution.undetermined.empty()) {
+    warnings.push_back("the views do not determine " + joined(result.solution.undetermined) +
+                       ": record the board at more angles and distances");
+  }
+  return warnings;
+}
+
+}  // namespace tartan_calib::pipeline
