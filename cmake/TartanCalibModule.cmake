@@ -70,3 +70,16 @@ function(tartan_calib_tests name)
   target_link_libraries(${name}_test PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
   gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
 endfunction()
+
+# tartan_calib_script_tests(<folder> [VARIABLE=value...]): every test/<folder>/*_test.py is one case of ctest, run by the
+# system's Python 3 with these variables in its environment.
+function(tartan_calib_script_tests folder)
+  find_program(TARTAN_CALIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(TARTAN_CALIB_PYTHON NAMES python3)
+  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/${folder}/*_test.py)
+  foreach(test ${tests})
+    get_filename_component(name ${test} NAME_WE)
+    add_test(NAME ${folder}.${name} COMMAND ${TARTAN_CALIB_PYTHON} -B ${test})
+    set_tests_properties(${folder}.${name} PROPERTIES ENVIRONMENT "${ARGN}")
+  endforeach()
+endfunction()
