@@ -68,7 +68,7 @@ function(tartan_calib_tests name)
   target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_compile_definitions(${name}_test PRIVATE TARTAN_CALIB_SOURCE_DIR="${TARTAN_CALIB_SOURCE_DIR}")
   target_link_libraries(${name}_test PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
-  gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${name}_test TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
 endfunction()
 
 # tartan_calib_script_tests(<folder> [VARIABLE=value...]): every test/<folder>/*_test.py is one case of ctest, run by the
