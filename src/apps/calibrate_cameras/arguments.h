@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tartan_calib/io/recording.h"
+#include "tartan_calib/pipeline/calibrate.h"
+
+namespace tartan_calib::apps {
+
+/// What the command line asks for.
+struct Arguments {
+  bool help = false;
+  bool verbose = false;
+
+  std::string recording;            ///< bag or folder; may be empty where corners_file is given
+  std::string corners_file;         ///< calibrate these corners instead of images
+  std::vector<std::string> topics;  ///< may be empty where corners_file or init_file names them
+  std::string target_file;
+  std::string init_file;  ///< camchain to start from
+  io::RecordingOptions selection;
+  pipeline::CalibrateOptions calibrate;  ///< models may be empty where init_file names them
+
+  bool export_poses = false;
+  bool export_corners = false;
+};
+
+/// Parses the words after the program's name as Python's argparse does for kalibr_calibrate_cameras: any order, unambiguous
+/// prefixes, `--flag=value`, lists that end at the next `--`, negative numbers as values, the last one of a flag given
+/// twice;
+/// `_` may stand for `-`. A prefix that Kalibr's own flags make unambiguous stays so among ours.
+/// Throws UsageError that names the flag.
+Arguments parseArguments(const std::vector<std::string>& words);
+
+/// KALIBR_MANUAL_FOCAL_LENGTH_INIT as a hint in pixels; null stands for an unset variable. Values that are no focal length
+/// in pixels (users set it to 1 to be asked for one) are empty.
+std::optional<double> focalHint(const char* value);
+
+/// Kalibr's flags, and those of this program alone; without the leading `--`.
+std::vector<std::string> kalibrFlags();
+std::vector<std::string> ownFlags();
+
+/// Text of --help.
+std::string helpText();
+
+}  // namespace tartan_calib::apps

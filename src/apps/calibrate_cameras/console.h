@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+
+#include "calibrate_cameras/inputs.h"
+#include "calibrate_cameras/outputs.h"
+#include "calibrate_cameras/progress_bar.h"
+#include "tartan_calib/pipeline/calibrate.h"
+
+namespace tartan_calib::apps {
+
+/// Tells on standard output what happens, in Kalibr's words where scripts look for them.
+class Console {
+ public:
+  explicit Console(const Inputs& inputs);
+
+  /// Valid while the console is.
+  pipeline::Listener listener();
+
+  void printResult(const pipeline::CalibrationResult& result);
+  void printFiles(const OutputFiles& files);
+  void printTimes(const pipeline::CalibrationResult& result);
+
+ private:
+  void onProgress(const pipeline::Progress& progress);
+  void onDetected(int camera_index, const pipeline::CameraCorners& corners);
+  void onStarted(const camera::Camera& camera);
+  void onRigStarted(const calibration::Problem& problem);
+  void printCameraHeader(int camera_index, std::size_t num_images);
+
+  const Inputs& inputs_;
+  ProgressBar bar_;
+};
+
+}  // namespace tartan_calib::apps

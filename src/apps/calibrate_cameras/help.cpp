@@ -1,0 +1,53 @@
+#include "calibrate_cameras/arguments.h"
+
+namespace tartan_calib::apps {
+
+std::string helpText() {
+  return R"(Calibrates cameras, and where they sit on a rig, from a recording of a calibration board.
+
+  rosrun tartan_calib calibrate_cameras --bag rig.bag --target april_6x6.yaml \
+      --topics /cam0/image_raw /cam1/image_raw --models ds-none ds-none
+
+writes rig-camchain.yaml, rig-results-cam.txt and rig-calibration.yaml beside the bag.
+
+What to calibrate
+  --bag B                   ROS 1 bag, or folder with cam0/<stamp in ns>.png (jpg, bmp, pgm)
+  --topics T [T ...]        image topics; the first is cam0. Of a folder: /cam0/image_raw ...
+  --models M [M ...]        one per topic: pinhole-none, pinhole-radtan, pinhole-equi, pinhole-fov,
+                            omni-none, omni-radtan, eucm-none, ds-none
+  --target F                board: YAML as Kalibr's (aprilgrid, checkerboard, circlegrid)
+  --corners F               calibrate from a file of --export-corners instead of images
+
+Which images
+  --bag-from-to A B         only those from A to B seconds after the topic's first
+  --bag-freq HZ             at most so many per second
+  --approx-sync S           largest difference of stamps in one view of a rig, seconds (0.02)
+
+Start from a calibration
+  --init F                  camchain to start from; --models and --topics may then be left out
+  --fix WHAT                intrinsics, extrinsics or camN: keeps them as in --init; may be repeated
+
+Solver
+  --estimate-board-warp     also fit the curvature of the board
+  --no-outliers-removal     keep all corners
+  --no-final-filtering      no last pass of outlier removal over all views
+  --min-views-outlier N     remove outliers only with more than N views per camera (20)
+  --use-blakezisserman      robust weights instead of plain least squares
+  --linear-solver L         schur, sparse or auto (auto): same result, different speed
+  --threads N               0 uses all cores (0); the result does not depend on it
+
+Output
+  --export-poses            also write <bag>-poses-cam0.csv
+  --export-corners          also write <bag>-corners.csv
+  --verbose                 also print how long each step took
+  -h, --help                this text
+
+Accepted for Kalibr's sake, without effect: a batch solver uses every view, in any order, and opens no windows
+  --qr-tol X  --mi-tol X  --no-shuffle  --plot  --plot-outliers  --show-extraction  --dont-show-report  --no-report
+
+Flags may be cut short while they stay unambiguous. Environment: KALIBR_MANUAL_FOCAL_LENGTH_INIT, a focal length in pixels
+above 10, helps the start where nothing else does. Exit code: 0 with a result, 1 without, 2 for a wrong command line.
+)";
+}
+
+}  // namespace tartan_calib::apps

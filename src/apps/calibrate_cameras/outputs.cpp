@@ -1,0 +1,83 @@
+#include "calibrate_cameras/outputs.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "tartan_calib/error.h"
+#include "tartan_calib/io/atomic_file.h"
+#include "tartan_calib/io/calibration_yaml.h"
+#include "tartan_calib/io/camchain.h"
+#include "tartan_calib/io/corners_csv.h"
+#include "tartan_calib/io/poses_csv.h"
+#include "tartan_calib/io/results_text.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCornersSuffix = "-corners.csv";
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Folders such as `.` and `rig/` have no name of their own to begin a file's name with.
+std::string folderPrefix(const std::string& folder) {
+  fs::path path = fs::path(folder).lexically_normal();
+  if (path.filename().empty()) {
+    path = path.parent_path();
+  }
+  const bool has_name = !path.filename().empty() && path.filename() != "." && path.filename() != "..";
+  return (has_name ? path : fs::canonical(folder)).string();
+}
+
+}  // namespace
+
+std::string outputPrefix(const Arguments& arguments) {
+  if (fs::is_directory(arguments.recording)) {
+    return folderPrefix(arguments.recording);
+  }
+  if (!arguments.recording.empty()) {
+    return fs::path(arguments.recording).replace_extension().string();
+  }
+  const std::string& corners = arguments.corners_file;
+  return endsWith(corners, kCornersSuffix) ? corners.substr(0, corners.size() - std::strlen(kCornersSuffix))
+                                           : fs::path(corners).replace_extension().string();
+}
+
+void checkWritable(const std::string& prefix) {
+  const fs::path parent = fs::path(prefix).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw InputError("results are written beside the recording, but folder " + folder + " cannot be written to (" +
+                     std::strerror(errno) + "): make a link to the recording in another folder and give that to --bag");
+  }
+}
+
+OutputFiles writeOutputs(const pipeline::CalibrationResult& result, const Arguments& arguments,
+                         const pipeline::CalibrateOptions& options, const std::string& command) {
+  const std::string prefix = outputPrefix(arguments);
+  const std::string& recording = arguments.corners_file.empty() ? arguments.recording : arguments.corners_file;
+  OutputFiles files;
+  files.camchain = prefix + "-camchain.yaml";
+  io::writeFile(files.camchain, io::camchainText(io::camchain(result)));
+  files.results = prefix + "-results-cam.txt";
+  io::writeFile(files.results, io::resultsText(result));
+  files.calibration = prefix + "-calibration.yaml";
+  io::writeFile(files.calibration, io::calibrationText(result, options, {recording, arguments.target_file, command}));
+  if (arguments.export_poses) {
+    files.poses = prefix + "-poses-cam0.csv";
+    io::writeFile(files.poses, io::posesText(result));
+  }
+  if (arguments.export_corners) {
+    files.corners = prefix + kCornersSuffix;
+    io::saveCorners(files.corners, pipeline::observedCorners(result));
+  }
+  return files;
+}
+
+}  // namespace tartan_calib::apps

@@ -1,0 +1,61 @@
+#include "calibrate_cameras/progress_bar.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace tartan_calib::apps {
+namespace {
+
+constexpr std::chrono::milliseconds kRedrawInterval{100};
+constexpr std::chrono::seconds kLineInterval{2};  ///< a log needs no more
+constexpr std::size_t kLinesPerRun = 10;
+
+std::string twoDigits(long value) { return (value < 10 ? "0" : "") + std::to_string(value); }
+
+}  // namespace
+
+std::string durationText(double seconds) {
+  constexpr long kSecondsPerMinute = 60;
+  constexpr long kSecondsPerHour = 3600;
+  const long whole = std::lround(seconds);
+  if (whole < kSecondsPerMinute) {
+    return std::to_string(whole) + "s";
+  }
+  if (whole < kSecondsPerHour) {
+    return std::to_string(whole / kSecondsPerMinute) + "m " + twoDigits(whole % kSecondsPerMinute) + "s";
+  }
+  return std::to_string(whole / kSecondsPerHour) + "h " + twoDigits(whole % kSecondsPerHour / kSecondsPerMinute) + "m";
+}
+
+bool ProgressBar::isDue(std::size_t done, std::size_t total) const {
+  const Clock::duration since = Clock::now() - drawn_at_;
+  return is_terminal_ ? since >= kRedrawInterval : since >= kLineInterval && (done - drawn_done_) * kLinesPerRun >= total;
+}
+
+void ProgressBar::show(std::size_t done, std::size_t total) {
+  if (done == 0) {
+    begin_ = drawn_at_ = Clock::now();
+    drawn_done_ = 0;
+    return;
+  }
+  if (!isDue(done, total)) {
+    return;
+  }
+  const std::chrono::duration<double> taken = Clock::now() - begin_;
+  const double left_s = taken.count() / static_cast<double>(done) * static_cast<double>(total - done);
+  std::printf("%s  Progress %zu / %zu \t Time remaining: %s%s", is_terminal_ ? "\r" : "", done, total,
+              durationText(left_s).c_str(), is_terminal_ ? "   " : "\n");
+  std::fflush(stdout);
+  is_drawn_ = is_terminal_;
+  drawn_at_ = Clock::now();
+  drawn_done_ = done;
+}
+
+void ProgressBar::clear() {
+  if (is_drawn_) {
+    std::fputs("\r\x1b[K", stdout);
+    is_drawn_ = false;
+  }
+}
+
+}  // namespace tartan_calib::apps

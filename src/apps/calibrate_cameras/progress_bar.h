@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace tartan_calib::apps {
+
+/// `45s`, `3m 05s`, `1h 02m`.
+std::string durationText(double seconds);
+
+/// Kalibr's progress line with the time left: redrawn in place on a terminal, else a line for every tenth of the work.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool is_terminal) : is_terminal_(is_terminal) {}
+
+  /// Begins anew where `done` is 0.
+  void show(std::size_t done, std::size_t total);
+
+  /// Takes the bar off the terminal.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool isDue(std::size_t done, std::size_t total) const;
+
+  bool is_terminal_;
+  bool is_drawn_ = false;
+  Clock::time_point begin_;
+  Clock::time_point drawn_at_;
+  std::size_t drawn_done_ = 0;
+};
+
+}  // namespace tartan_calib::apps

@@ -1,0 +1,187 @@
+#include "calibrate_cameras/arguments.h"
+
+#include <gtest/gtest.h>
+
+#include "common/program.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A complete command line and further words.
+Words commandWith(const Words& words) {
+  Words command = {"--bag", "rig.bag", "--topics", "/a", "/b", "--models", "ds-none", "pinhole-equi", "--target", "t.yaml"};
+  command.insert(command.end(), words.begin(), words.end());
+  return command;
+}
+
+Arguments parsedWith(const Words& words) { return parseArguments(commandWith(words)); }
+
+std::string usageError(const Words& words) {
+  try {
+    parseArguments(words);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Arguments, HaveKalibrsDefaults) {
+  const Arguments arguments = parsedWith({});
+  EXPECT_EQ(arguments.recording, "rig.bag");
+  EXPECT_EQ(arguments.topics, (Words{"/a", "/b"}));
+  EXPECT_EQ(arguments.calibrate.models, (Words{"ds-none", "pinhole-equi"}));
+  EXPECT_EQ(arguments.target_file, "t.yaml");
+  EXPECT_FALSE(arguments.selection.window.has_value());
+  EXPECT_FALSE(arguments.selection.max_rate_hz.has_value());
+  EXPECT_EQ(arguments.calibrate.approx_sync_ns, 20'000'000);
+  EXPECT_EQ(arguments.calibrate.solve.min_views_outlier, 20);
+  EXPECT_TRUE(arguments.calibrate.solve.remove_outliers);
+  EXPECT_TRUE(arguments.calibrate.solve.final_filtering);
+  EXPECT_FALSE(arguments.calibrate.solve.use_blake_zisserman);
+  EXPECT_FALSE(arguments.export_poses);
+  EXPECT_FALSE(arguments.export_corners);
+}
+
+TEST(Arguments, SetEveryOption) {
+  const Arguments arguments = parsedWith({"--bag-from-to",
+                                          "2.5",
+                                          "60",
+                                          "--bag-freq=4.0",
+                                          "--approx-sync",
+                                          "0.001",
+                                          "--no-outliers-removal",
+                                          "--no-final-filtering",
+                                          "--min-views-outlier",
+                                          "7",
+                                          "--use-blakezisserman",
+                                          "--verbose",
+                                          "--export-poses",
+                                          "--init",
+                                          "old.yaml",
+                                          "--fix",
+                                          "intrinsics",
+                                          "--fix",
+                                          "cam1",
+                                          "--estimate-board-warp",
+                                          "--linear-solver",
+                                          "sparse",
+                                          "--threads",
+                                          "3",
+                                          "--export-corners",
+                                          "--corners",
+                                          "c.csv"});
+  EXPECT_EQ(arguments.selection.window->from_s, 2.5);
+  EXPECT_EQ(arguments.selection.window->to_s, 60.0);
+  EXPECT_EQ(arguments.selection.max_rate_hz, 4.0);
+  EXPECT_EQ(arguments.calibrate.approx_sync_ns, 1'000'000);
+  EXPECT_FALSE(arguments.calibrate.solve.remove_outliers);
+  EXPECT_FALSE(arguments.calibrate.solve.final_filtering);
+  EXPECT_EQ(arguments.calibrate.solve.min_views_outlier, 7);
+  EXPECT_TRUE(arguments.calibrate.solve.use_blake_zisserman);
+  EXPECT_TRUE(arguments.verbose);
+  EXPECT_TRUE(arguments.export_poses);
+  EXPECT_EQ(arguments.init_file, "old.yaml");
+  EXPECT_TRUE(arguments.calibrate.solve.fix_intrinsics);
+  EXPECT_FALSE(arguments.calibrate.solve.fix_extrinsics);
+  EXPECT_EQ(arguments.calibrate.solve.fixed_cameras, (std::vector<int>{1}));
+  EXPECT_TRUE(arguments.calibrate.solve.estimate_board_warp);
+  EXPECT_EQ(arguments.calibrate.solve.linear_solver, calibration::LinearSolver::kSparse);
+  EXPECT_EQ(arguments.calibrate.num_threads, 3);
+  EXPECT_TRUE(arguments.export_corners);
+  EXPECT_EQ(arguments.corners_file, "c.csv");
+}
+
+TEST(Arguments, AcceptWhatHasNoEffectHere) {
+  EXPECT_NO_THROW(parsedWith({"--qr-tol", "0.02", "--mi-tol", "-1", "--no-shuffle", "--plot", "--plot-outliers",
+                              "--show-extraction", "--dont-show-report", "--no-report"}));
+}
+
+TEST(Arguments, MayBeCutShort) {
+  const Arguments arguments =
+      parseArguments({"--topic", "/a", "--model", "ds-none", "--ta", "t.yaml", "--bag", "a.bag", "--bag-fre", "2"});
+  EXPECT_EQ(arguments.topics, Words{"/a"});
+  EXPECT_EQ(arguments.selection.max_rate_hz, 2.0);
+}
+
+TEST(Arguments, CutShortMeanKalibrsFlagWhereKalibrHasOnlyOne) {
+  const Arguments arguments = parsedWith({"--export"});
+  EXPECT_TRUE(arguments.export_poses);
+  EXPECT_FALSE(arguments.export_corners);
+}
+
+TEST(Arguments, CutShortTooFarAreRefusedWithTheCandidates) {
+  const std::string error = usageError(commandWith({"--no"}));
+  EXPECT_TRUE(contains(error, "--no-shuffle") && contains(error, "--no-final-filtering")) << error;
+}
+
+TEST(Arguments, MayUseUnderscores) {
+  EXPECT_FALSE(parsedWith({"--no_final_filtering"}).calibrate.solve.final_filtering);
+  EXPECT_EQ(parsedWith({"--bag_freq=3"}).selection.max_rate_hz, 3.0);
+  EXPECT_EQ(parsedWith({"--init=my_chain.yaml"}).init_file, "my_chain.yaml");
+}
+
+TEST(Arguments, TakeNegativeNumbersAsValues) {
+  EXPECT_EQ(parsedWith({"--bag-from-to", "-1", "5"}).selection.window->from_s, -1.0);
+  EXPECT_TRUE(contains(usageError(commandWith({"--approx-sync", "-1"})), "--approx-sync"));
+}
+
+TEST(Arguments, CountTheLastOfAFlagGivenTwice) {
+  EXPECT_EQ(parsedWith({"--bag-freq", "1", "--bag-freq", "2"}).selection.max_rate_hz, 2.0);
+  EXPECT_EQ(parsedWith({"--topics", "/c", "/d"}).topics, (Words{"/c", "/d"}));
+}
+
+TEST(Arguments, ThatAreWrongAreNamed) {
+  EXPECT_TRUE(contains(usageError(commandWith({"--colour"})), "--colour"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--bag-freq", "fast"})), "fast"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--bag-freq"})), "--bag-freq"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--verbose", "word"})), "word"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--bag-from-to", "1"})), "--bag-from-to"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--min-views-outlier", "0"})), "--min-views-outlier"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--threads", "-2"})), "--threads"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--linear-solver", "qr"})), "qr"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--init", "a.yaml", "--fix", "camera1"})), "camera1"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--fix", "cam1"})), "--init"));
+}
+
+TEST(Arguments, ThatAreMissingAreNamed) {
+  EXPECT_TRUE(contains(usageError({"--topics", "/a", "--models", "ds-none", "--bag", "a.bag"}), "--target"));
+  EXPECT_TRUE(contains(usageError({"--topics", "/a", "--models", "ds-none", "--target", "t"}), "--bag"));
+  EXPECT_TRUE(contains(usageError({"--topics", "/a", "--bag", "a.bag", "--target", "t"}), "--models"));
+  EXPECT_TRUE(contains(usageError({"--models", "ds-none", "--bag", "a.bag", "--target", "t"}), "--topics"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--models", "ds-none"})), "one camera model per topic"));
+}
+
+TEST(Arguments, MayLeaveOutWhatAnotherFileNames) {
+  EXPECT_NO_THROW(parseArguments({"--corners", "c.csv", "--models", "ds-none", "--target", "t"}));
+  EXPECT_NO_THROW(parseArguments({"--bag", "a.bag", "--init", "chain.yaml", "--target", "t"}));
+}
+
+TEST(Arguments, AskForHelpWithoutTheRest) {
+  EXPECT_TRUE(parseArguments({"-h"}).help);
+  EXPECT_TRUE(parseArguments({"--help"}).help);
+}
+
+TEST(Help, NamesEveryFlag) {
+  Words flags = kalibrFlags();
+  const Words own = ownFlags();
+  flags.insert(flags.end(), own.begin(), own.end());
+  for (const std::string& flag : flags) {
+    const bool is_there = contains(helpText(), "--" + flag + " ") || contains(helpText(), "--" + flag + "\n");
+    EXPECT_TRUE(is_there) << flag;
+  }
+}
+
+TEST(FocalHint, IsANumberOfPixelsAboveTen) {
+  EXPECT_EQ(focalHint("420.5"), 420.5);
+  EXPECT_EQ(focalHint(nullptr), std::nullopt);
+  for (const char* value : {"1", "10", "-500", "true", "", "500 px", "inf", "nan"}) {
+    EXPECT_EQ(focalHint(value), std::nullopt) << value;
+  }
+}
+
+}  // namespace
+}  // namespace tartan_calib::apps
