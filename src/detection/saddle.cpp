@@ -195,6 +195,8 @@ std::optional<Wedges> examine(const Level& level, const Eigen::Vector2d& px) {
 std::optional<Eigen::Vector2d> locateSaddle(const cv::Mat& smoothed, const SaddlePeak& peak) {
   constexpr int kMaxMoves = 3;
   constexpr double kMaxStep_px = 1.5;
+  constexpr double kNearestPixel_px = 0.6;
+  constexpr double kNextPixel_px = 1.1;
   int x = peak.x;
   int y = peak.y;
   for (int move = 0; move < kMaxMoves; ++move) {
@@ -215,10 +217,12 @@ std::optional<Eigen::Vector2d> locateSaddle(const cv::Mat& smoothed, const Saddl
     }
     const Eigen::Vector2d step(-(hessian(1, 1) * gradient.x() - hessian(0, 1) * gradient.y()) / det,
                                -(hessian(0, 0) * gradient.y() - hessian(0, 1) * gradient.x()) / det);
-    if (step.cwiseAbs().maxCoeff() > kMaxStep_px) {
+    const double length_px = step.cwiseAbs().maxCoeff();
+    if (length_px > kMaxStep_px) {
       return std::nullopt;
     }
-    if (step.cwiseAbs().maxCoeff() <= 0.6) {
+    // Half-way between pixels each of the two may send to the other: the last one is believed.
+    if (length_px <= kNearestPixel_px || (move + 1 == kMaxMoves && length_px <= kNextPixel_px)) {
       return Eigen::Vector2d(x, y) + step;
     }
     x += static_cast<int>(std::lround(step.x()));

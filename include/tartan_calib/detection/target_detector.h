@@ -31,6 +31,8 @@ struct Detection {
   DetectionCounts counts;
 };
 
+class DetectionMethod;
+
 /// Finds the corners of one target in images. `detect` is const and may be called from several threads.
 class TargetDetector {
  public:
@@ -43,8 +45,7 @@ class TargetDetector {
   Detection detect(const cv::Mat& gray) const;
 
  private:
-  class Method;
-  std::unique_ptr<const Method> method_;
+  std::unique_ptr<const DetectionMethod> method_;
 };
 
 }  // namespace tartan_calib::detection

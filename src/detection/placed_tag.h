@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "tag_map.h"
+#include "tag_reader.h"
+#include "tartan_calib/detection/saddle.h"
+#include "tartan_calib/detection/target_detector.h"
+#include "tartan_calib/target/target.h"
+
+namespace tartan_calib::detection {
+
+/// What the search for tags looks at, and what for.
+struct BoardSearch {
+  const cv::Mat& gray;
+  const std::vector<Saddle>& saddles;
+  const target::AprilGrid& grid;
+  const TagReader& reader;
+  int max_hamming;
+};
+
+/// A tag of the board in the image. Corners are clockwise from the printed tag's top left one; `map` has uv = (0, 0) there,
+/// u to the right and v down as printed.
+struct PlacedTag {
+  int tag_index = -1;
+  std::array<int, 4> saddle_index = {};
+  TagMap map;
+};
+
+/// Wrong bits that a tag may have whose place on the board other tags have settled: then only one code is possible, and up
+/// to half the distance between codes it cannot be taken for another.
+inline int maxHammingWherePlaced(const target::TagFamily& family) { return (family.min_hamming_distance - 1) / 2; }
+
+/// Map of the square with corners (0, 0), (1, 0), (1, 1), (0, 1) of a lattice, bent towards the nodes around it.
+/// `pixelAt(i, j)`, i and j from -1 to 2, gives a node's pixel or nothing; the four corners must exist.
+template <typename PixelAt>
+TagMap mapFromLattice(double gap, const PixelAt& pixelAt) {
+  TagMap map({*pixelAt(0, 0), *pixelAt(1, 0), *pixelAt(1, 1), *pixelAt(0, 1)});
+  const std::array<double, 4> position = {-gap, 0.0, 1.0, 1.0 + gap};
+  std::vector<TagPoint> around;
+  for (int j = -1; j <= 2; ++j) {
+    for (int i = -1; i <= 2; ++i) {
+      const bool is_corner = (i == 0 || i == 1) && (j == 0 || j == 1);
+      const std::optional<Eigen::Vector2d> px = is_corner ? std::nullopt : std::optional<Eigen::Vector2d>(pixelAt(i, j));
+      if (px) {
+        around.push_back({{position[static_cast<std::size_t>(i + 1)], position[static_cast<std::size_t>(j + 1)]}, *px});
+      }
+    }
+  }
+  map.bendTowards(around);
+  return map;
+}
+
+}  // namespace tartan_calib::detection
