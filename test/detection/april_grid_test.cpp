@@ -42,7 +42,7 @@ Score score(const Detection& detection, const std::vector<simulation::TrueCorner
 TEST(AprilGridDetector, findsEveryCornerOfASharpBoard) {
   const target::AprilGrid grid;
   BoardScene scene(test_support::pinholeCamera(640, 480, 500.0));
-  const auto truth = scene.add(grid, {0.9, 5.0 * kDegree, 1.0, 20.0 * kDegree, -25.0 * kDegree, 30.0 * kDegree});
+  const auto truth = scene.add(grid, {1.1, 5.0 * kDegree, 1.0, 20.0 * kDegree, -25.0 * kDegree, 30.0 * kDegree});
   const Detection detection = TargetDetector(grid).detect(scene.expose(0.6, 2.0));
   const Score result = score(detection, truth);
   EXPECT_EQ(result.found, 144);
