@@ -12,11 +12,11 @@ struct MethodFor {
   std::unique_ptr<const DetectionMethod> operator()(const target::AprilGrid& grid) const {
     return makeAprilGridMethod(grid, options);
   }
-  std::unique_ptr<const DetectionMethod> operator()(const target::Checkerboard&) const {
-    throw InputError("checkerboards cannot be detected; use an aprilgrid");
+  std::unique_ptr<const DetectionMethod> operator()(const target::Checkerboard& board) const {
+    return makeCheckerboardMethod(board, options);
   }
-  std::unique_ptr<const DetectionMethod> operator()(const target::CircleGrid&) const {
-    throw InputError("circle grids cannot be detected; use an aprilgrid");
+  std::unique_ptr<const DetectionMethod> operator()(const target::CircleGrid& grid) const {
+    return makeCircleGridMethod(grid, options);
   }
 };
 

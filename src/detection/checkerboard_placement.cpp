@@ -1,0 +1,135 @@
+#include "checkerboard_placement.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace tartan_calib::detection {
+namespace {
+
+// An outer line of the lattice with a smaller share of corners than the fullest line is a chance find beyond the board.
+constexpr double kMinLineFill_ratio = 0.5;
+
+/// Columns and rows of a lattice, the first inclusive, the last exclusive.
+struct Extent {
+  int first_column, last_column, first_row, last_row;
+
+  int columns() const { return last_column - first_column; }
+  int rows() const { return last_row - first_row; }
+};
+
+/// Number of corners in each column or row.
+std::vector<int> lineCounts(const SaddleLattice& lattice, const Extent& extent, bool of_columns) {
+  std::vector<int> counts(static_cast<std::size_t>(of_columns ? lattice.numColumns() : lattice.numRows()), 0);
+  for (const LatticeNode& node : lattice.nodes()) {
+    if (node.column >= extent.first_column && node.column < extent.last_column && node.row >= extent.first_row &&
+        node.row < extent.last_row) {
+      ++counts[static_cast<std::size_t>(of_columns ? node.column : node.row)];
+    }
+  }
+  return counts;
+}
+
+/// Shrinks [first, last) past outer lines that are nearly empty; true if it did.
+bool trimLines(const std::vector<int>& counts, int& first, int& last) {
+  const double min_count = kMinLineFill_ratio * *std::max_element(counts.begin(), counts.end());
+  const int previous_size = last - first;
+  while (first < last && counts[static_cast<std::size_t>(first)] < min_count) {
+    ++first;
+  }
+  while (first < last && counts[static_cast<std::size_t>(last - 1)] < min_count) {
+    --last;
+  }
+  return last - first < previous_size;
+}
+
+Extent filledExtent(const SaddleLattice& lattice) {
+  Extent extent{0, lattice.numColumns(), 0, lattice.numRows()};
+  bool trimmed = true;
+  while (trimmed) {
+    trimmed = trimLines(lineCounts(lattice, extent, true), extent.first_column, extent.last_column);
+    trimmed = trimLines(lineCounts(lattice, extent, false), extent.first_row, extent.last_row) || trimmed;
+  }
+  return extent;
+}
+
+/// A way to lay the board on the lattice: `quarter_turns` clockwise.
+struct Placement {
+  Extent extent;
+  int quarter_turns;
+
+  /// Place on the board, counted from corner 0 of the board as it is turned.
+  LatticePlace onBoard(int column, int row) const {
+    const int right = column - extent.first_column;
+    const int left = extent.last_column - 1 - column;
+    const int down = row - extent.first_row;
+    const int up = extent.last_row - 1 - row;
+    const std::array<LatticePlace, 4> turns{LatticePlace{down, right}, LatticePlace{left, down}, LatticePlace{up, left},
+                                            LatticePlace{right, up}};
+    return turns[static_cast<std::size_t>(quarter_turns)];
+  }
+
+  /// Whether the square beyond corner 0 of the board is dark.
+  bool isDarkAtOrigin(const SaddleLattice& lattice) const {
+    const bool at_last_column = quarter_turns == 1 || quarter_turns == 2;
+    const bool at_last_row = quarter_turns == 2 || quarter_turns == 3;
+    return lattice.isDarkFace(at_last_column ? extent.last_column - 1 : extent.first_column - 1,
+                              at_last_row ? extent.last_row - 1 : extent.first_row - 1);
+  }
+
+  PlacedCorners corners(const SaddleLattice& lattice, const std::vector<Saddle>& saddles) const {
+    PlacedCorners placed;
+    placed.dark_ahead = isDarkAtOrigin(lattice);  // squares that touch at a corner are alike
+    for (const LatticeNode& node : lattice.nodes()) {
+      const bool inside = node.column >= extent.first_column && node.column < extent.last_column &&
+                          node.row >= extent.first_row && node.row < extent.last_row;
+      if (inside) {
+        placed.saddles.emplace(onBoard(node.column, node.row), saddles[static_cast<std::size_t>(node.saddle_index)]);
+      }
+    }
+    return placed;
+  }
+};
+
+/// How far rows and columns run towards the lower right of the image: the covariance of row + column with u + v.
+double towardsLowerRight(const PlacedCorners& corners) {
+  double sum_place = 0.0;
+  double sum_px = 0.0;
+  double sum_product = 0.0;
+  for (const auto& [place, saddle] : corners.saddles) {
+    sum_place += place.first + place.second;
+    sum_px += saddle.px.sum();
+    sum_product += (place.first + place.second) * saddle.px.sum();
+  }
+  return sum_product - sum_place * sum_px / static_cast<double>(corners.saddles.size());
+}
+
+}  // namespace
+
+std::optional<PlacedCorners> placeOnBoard(const SaddleLattice& lattice, const std::vector<Saddle>& saddles,
+                                          const target::Checkerboard& board) {
+  const Extent extent = filledExtent(lattice);
+  std::vector<Placement> placements;
+  for (int quarter_turns = 0; quarter_turns < 4; ++quarter_turns) {
+    const bool upright = quarter_turns % 2 == 0;
+    if ((upright ? extent.rows() : extent.columns()) == board.rows &&
+        (upright ? extent.columns() : extent.rows()) == board.cols) {
+      placements.push_back({extent, quarter_turns});
+    }
+  }
+  const auto dark_end = std::stable_partition(placements.begin(), placements.end(),
+                                              [&](const Placement& p) { return p.isDarkAtOrigin(lattice); });
+  if (dark_end != placements.begin()) {
+    placements.erase(dark_end, placements.end());
+  }
+  std::optional<PlacedCorners> best;
+  for (const Placement& placement : placements) {
+    PlacedCorners corners = placement.corners(lattice, saddles);
+    if (!best || towardsLowerRight(corners) > towardsLowerRight(*best)) {
+      best = std::move(corners);
+    }
+  }
+  return best;
+}
+
+}  // namespace tartan_calib::detection
