@@ -138,8 +138,9 @@ std::vector<std::string> covarianceNames(const calibration::Solution& solution) 
                       std::to_string(is_intrinsic ? k : k - num_intrinsics));
     }
   }
-  for (Eigen::Index k = static_cast<Eigen::Index>(names.size()); k < solution.covariance.rows(); ++k) {
-    names.push_back("board_warp_m." + std::to_string(k - static_cast<Eigen::Index>(names.size())));
+  const auto num_warp = static_cast<std::size_t>(solution.covariance.rows()) - names.size();
+  for (std::size_t k = 0; k < num_warp; ++k) {
+    names.push_back("board_warp_m." + std::to_string(k));
   }
   return names;
 }

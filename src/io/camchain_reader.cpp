@@ -26,12 +26,7 @@ class CameraReader {
   }
 
   camera::Camera camera() const {
-    camera::CameraModel kind;
-    try {
-      kind = camera::modelByKalibrNames(text("camera_model"), text("distortion_model"));
-    } catch (const InputError& error) {
-      throw InputError(yamlPlace(name_, map_["camera_model"]) + ": " + camera_ + ": " + error.what());
-    }
+    const camera::CameraModel kind = model();
     const Eigen::Index num_intrinsics = camera::numIntrinsics(kind);
     const Eigen::Index num_parameters = camera::numParameters(kind);
     Eigen::VectorXd parameters(num_parameters);
@@ -78,6 +73,16 @@ class CameraReader {
 
  private:
   static bool isSize(int pixels) { return pixels > 0 && pixels <= kMaxResolution; }
+
+  camera::CameraModel model() const {
+    const std::string camera_model = text("camera_model");
+    const std::string distortion_model = text("distortion_model");
+    try {
+      return camera::modelByKalibrNames(camera_model, distortion_model);
+    } catch (const InputError& error) {
+      throw InputError(yamlPlace(name_, map_["camera_model"]) + ": " + camera_ + ": " + error.what());
+    }
+  }
 
   YAML::Node required(const std::string& key) const {
     const YAML::Node node = map_[key];

@@ -95,8 +95,10 @@ std::optional<std::vector<double>> yamlNumbers(const YAML::Node& node) { return 
 std::optional<std::vector<int>> yamlInts(const YAML::Node& node) { return sequence<int>(node, yamlInt); }
 
 std::string yamlPlace(const std::string& name, const YAML::Node& node) {
-  const YAML::Mark mark = node.Mark();
-  return mark.is_null() ? name : name + ":" + std::to_string(mark.line + 1);
+  if (!node.IsDefined() || node.Mark().is_null()) {
+    return name;
+  }
+  return name + ":" + std::to_string(node.Mark().line + 1);
 }
 
 std::string yamlExcerpt(const YAML::Node& node) {

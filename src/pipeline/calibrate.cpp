@@ -1,8 +1,6 @@
 #include "tartan_calib/pipeline/calibrate.h"
 
-#include <algorithm>
 #include <chrono>
-#include <set>
 
 #include "calibration_run.h"
 
@@ -20,21 +18,6 @@ void throwIfUnreadable(const CameraStream& stream, const CameraCorners& corners)
 
 }  // namespace
 
-int minTags(const target::AprilGrid& grid) {
-  return std::min(std::max(grid.tag_rows, grid.tag_cols) + 1, target::numTags(grid));
-}
-
-int countTags(const target::AprilGrid& grid, const std::vector<observation::Corner>& corners) {
-  const int lattice_cols = 2 * grid.tag_cols;
-  std::set<int> tags;
-  for (const observation::Corner& corner : corners) {
-    const int row = corner.corner_id / lattice_cols / 2;
-    const int col = corner.corner_id % lattice_cols / 2;
-    tags.insert(row * grid.tag_cols + col);
-  }
-  return static_cast<int>(tags.size());
-}
-
 std::string stageName(Stage stage) {
   switch (stage) {
     case Stage::kDetect:
@@ -49,32 +32,6 @@ std::string stageName(Stage stage) {
       return "statistics";
   }
   return "";
-}
-
-std::vector<CameraCorners> observedCorners(const CalibrationResult& result) {
-  std::vector<CameraCorners> cameras;
-  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
-    CameraCorners corners;
-    corners.topic = result.cameras[i].topic;
-    corners.width = result.solution.rig.cameras[i].camera.width;
-    corners.height = result.solution.rig.cameras[i].camera.height;
-    corners.num_images = result.cameras[i].num_images;
-    corners.counts = result.cameras[i].counts;
-    cameras.push_back(corners);
-  }
-  for (const observation::View& view : result.solution.views) {
-    for (const observation::CameraView& image : view.cameras) {
-      cameras[static_cast<std::size_t>(image.camera_index)].images.push_back(image);
-    }
-  }
-  for (const observation::CameraView& image : result.unused_images) {
-    cameras[static_cast<std::size_t>(image.camera_index)].images.push_back(image);
-  }
-  for (CameraCorners& corners : cameras) {
-    const auto by_stamp = [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; };
-    std::sort(corners.images.begin(), corners.images.end(), by_stamp);
-  }
-  return cameras;
 }
 
 CalibrationResult calibrate(const std::vector<CameraStream>& streams, const target::Target& target,
