@@ -123,7 +123,9 @@ class BoardPainter {
     }
   }
 
-  BoardLayer layer(const cv::Rect& window) const { return {window, sheet_.coverage(), white_.coverage()}; }
+  BoardLayer layer(const cv::Rect& window) const {
+    return {window, sheet_.coverage(), white_.coverage(), white_.shiftDerivative()};
+  }
 
  private:
   const ProjectedPattern& board_;

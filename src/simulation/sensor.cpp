@@ -1,17 +1,23 @@
 #include "tartan_calib/simulation/sensor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace tartan_calib::simulation {
 
-void applyPsf(cv::Mat1f& grey, double sigma_px) {
+void applyPsf(cv::Mat& grey, double sigma_px) {
   constexpr double kRadiusInSigmas = 4.0;  // cuts 6e-5 of the weight
   if (sigma_px <= 0.0) {
     return;
   }
   const int size = 2 * static_cast<int>(std::ceil(kRadiusInSigmas * sigma_px)) + 1;
   cv::GaussianBlur(grey, grey, cv::Size(size, size), sigma_px, sigma_px, cv::BORDER_REPLICATE);
+}
+
+double pixelVariance(double grey, const SensorOptions& options) {
+  constexpr double kRounding = 1.0 / 12.0;
+  return options.read_noise_grey * options.read_noise_grey + options.shot_noise_grey * std::max(0.0, grey) + kRounding;
 }
 
 cv::Mat expose(const cv::Mat1f& grey, const SensorOptions& options, std::uint64_t seed) {

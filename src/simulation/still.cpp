@@ -17,8 +17,7 @@ Still renderStill(const target::Target& target, const camera::Camera& camera, co
     seen.copyTo(behind);
   }
   applyPsf(grey, options.psf_sigma_px);
-  SensorOptions sensor;
-  sensor.read_noise_grey = options.noise_sigma;
+  const SensorOptions sensor{options.psf_sigma_px, options.noise_sigma, 0.0};
   return {expose(grey, sensor, options.seed), projectCorners(target, camera, T_cam_target)};
 }
 

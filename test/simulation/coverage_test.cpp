@@ -68,5 +68,26 @@ TEST(CoverageBuffer, subtractsAClockwiseHole) {
   EXPECT_NEAR(buffer.coverage()(20, 20), 0.0, 1e-6);
 }
 
+TEST(CoverageBuffer, knowsHowAShiftChangesEachPixel) {
+  constexpr double kShiftPx = 1e-2;
+  const cv::Rect window(5, 6, 30, 30);  // cuts the shape
+  const auto covered = [&window](const Eigen::Vector2d& shift) {
+    CoverageBuffer buffer(window);
+    addPolygon(buffer, disc(Eigen::Vector2d(19.3, 20.7) + shift, 13.4));
+    return buffer.coverage();
+  };
+  CoverageBuffer buffer(window);
+  addPolygon(buffer, disc({19.3, 20.7}, 13.4));
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector2d shift = kShiftPx * Eigen::Vector2d::Unit(axis);
+    const cv::Mat numeric = (covered(shift) - covered(-shift)) / (2.0 * kShiftPx);
+    cv::Mat analytic;
+    cv::extractChannel(buffer.shiftDerivative(), analytic, axis);
+    // An edge that enters a pixel within the shift bends the numeric difference.
+    EXPECT_LT(cv::norm(numeric, analytic, cv::NORM_INF), 0.02);
+    EXPECT_LT(cv::norm(numeric, analytic, cv::NORM_L1) / window.area(), 2e-4);
+  }
+}
+
 }  // namespace
 }  // namespace tartan_calib::simulation

@@ -10,9 +10,10 @@ namespace tartan_calib::simulation {
 
 /// A board as a camera sees it at one moment, before blur: per pixel the fractions of its area that are covered.
 struct BoardLayer {
-  cv::Rect window;  ///< the part of the image that the board touches; empty where it is out of view
-  cv::Mat1f sheet;  ///< of the window's size: covered by the sheet
-  cv::Mat1f white;  ///< covered by white paper, at most `sheet`
+  cv::Rect window;             ///< the part of the image that the board touches; empty where it is out of view
+  cv::Mat1f sheet;             ///< of the window's size: covered by the sheet
+  cv::Mat1f white;             ///< covered by white paper, at most `sheet`
+  cv::Mat2f white_derivative;  ///< d(white) / d(shift of the board's image [px])
 };
 
 /// Draws the front of the board, or its white back where the camera is behind it. Pixel areas are exact: the cells' edges

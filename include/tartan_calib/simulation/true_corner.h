@@ -9,15 +9,18 @@
 
 namespace tartan_calib::simulation {
 
+/// Variance that says that pixels do not determine a corner; a thousand pixels are as good as anywhere.
+constexpr double kNoInformationPx2 = 1e6;
+
 /// Where a corner of the board really is in an image.
 struct TrueCorner {
   int corner_id = -1;
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
   bool visible = true;                 ///< inside of the image and of the lens' circle, and clear of occluders
   double neighbour_distance_px = 0.0;  ///< to the nearest other corner of the board
-  /// Cramer-Rao bound: no unbiased estimate from the pixels around this corner can have a smaller covariance. Zero where it
-  /// was not asked for, infinite where the pixels say nothing.
-  Eigen::Matrix2d bound_px2 = Eigen::Matrix2d::Zero();
+  /// Cramer-Rao bound: no unbiased estimate from the pixels around this corner can have a smaller covariance. Known for
+  /// the pictures of a Renderer only.
+  Eigen::Matrix2d bound_px2 = kNoInformationPx2 * Eigen::Matrix2d::Identity();
 };
 
 /// Corners must be so far inside of the image and of the lens' circle to count as visible.
