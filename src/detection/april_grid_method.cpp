@@ -33,6 +33,30 @@ void dropDuplicates(std::vector<PlacedTag>& tags, DetectionCounts& counts) {
   tags = std::move(single);
 }
 
+struct TagCorner {
+  int id;
+  RefinedCorner refined;
+};
+
+/// Drops corners that are much less symmetric than most of the board: something covers them in part.
+void dropDisturbed(std::vector<TagCorner>& corners) {
+  constexpr double kAlwaysFine = 0.1;  // asymmetry in units of the contrast
+  constexpr double kFactor = 2.2;      // recorded: 99 % of clear corners are below 1.7 times the median, covered ones above
+  if (corners.empty()) {
+    return;
+  }
+  std::vector<double> ratios;
+  for (const TagCorner& corner : corners) {
+    ratios.push_back(corner.refined.residual_ratio);
+  }
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  const double limit = std::max(kAlwaysFine, kFactor * *middle);
+  corners.erase(std::remove_if(corners.begin(), corners.end(),
+                               [limit](const TagCorner& c) { return c.refined.residual_ratio > limit; }),
+                corners.end());
+}
+
 class AprilGridMethod : public DetectionMethod {
  public:
   AprilGridMethod(const target::AprilGrid& grid, const DetectorOptions& options)
@@ -51,10 +75,15 @@ class AprilGridMethod : public DetectionMethod {
     }
     dropDuplicates(tags, detection.counts);
     completeBoard(search, tags);
+    std::vector<TagCorner> corners;
     for (const PlacedTag& tag : tags) {
-      if (isClearOfBorder(search, tag)) {
-        addCorners(search, tag, detection);
-      }
+      const auto refined = refineTag(search, tag);
+      corners.insert(corners.end(), refined.begin(), refined.end());
+      detection.counts.tags += refined.empty() ? 0 : 1;
+    }
+    dropDisturbed(corners);
+    for (const TagCorner& corner : corners) {
+      detection.corners.push_back({corner.id, corner.refined.px, corner.refined.cov_px2, true});
     }
     std::sort(detection.corners.begin(), detection.corners.end(),
               [](const auto& a, const auto& b) { return a.corner_id < b.corner_id; });
@@ -62,31 +91,40 @@ class AprilGridMethod : public DetectionMethod {
   }
 
  private:
-  bool isClearOfBorder(const BoardSearch& search, const PlacedTag& tag) const {
-    const double margin_px = options_.min_border_distance_px;
-    return std::all_of(tag.saddle_index.begin(), tag.saddle_index.end(), [&](int i) {
-      const Eigen::Vector2d& px = search.saddles[static_cast<std::size_t>(i)].px;
-      return px.x() >= margin_px && px.y() >= margin_px && px.x() <= search.gray.cols - 1 - margin_px &&
-             px.y() <= search.gray.rows - 1 - margin_px;
-    });
-  }
-
-  void addCorners(const BoardSearch& search, const PlacedTag& tag, Detection& detection) const {
+  /// The corners of a tag that could be refined; none where the tag is too close to the image's border.
+  std::vector<TagCorner> refineTag(const BoardSearch& search, const PlacedTag& tag) const {
     const std::vector<int> corner_ids = target::tagCornerIds(grid_, tag.tag_index);
+    std::vector<TagCorner> corners;
     for (std::size_t k = 0; k < 4; ++k) {
-      const Saddle& saddle = search.saddles[static_cast<std::size_t>(tag.saddle_index[k])];
-      const Eigen::Vector2d uv(k == 1 || k == 2 ? 1.0 : 0.0, k >= 2 ? 1.0 : 0.0);
-      const Eigen::Vector2d corner_px = tag.map(uv);
-      RefineOptions refine = refine_;
-      refine.max_shift_px = options_.max_refine_shift_px * saddle.scale_px;
-      const auto refined = refineBySymmetry(
-          search.gray, saddle.px, [&](const Eigen::Vector2d& s) { return Eigen::Vector2d(tag.map(uv + s) - corner_px); },
-          refine);
+      const auto refined = refineCorner(search, tag, k);
+      if (!isClearOfBorder(search.gray, refined ? refined->px : tag.corners_px[k])) {
+        return {};
+      }
       if (refined) {
-        detection.corners.push_back({corner_ids[3 - k], refined->px, refined->cov_px2, true});
+        corners.push_back({corner_ids[3 - k], *refined});  // ids are counted the other way round, from the bottom left
       }
     }
-    ++detection.counts.tags;
+    return corners;
+  }
+
+  std::optional<RefinedCorner> refineCorner(const BoardSearch& search, const PlacedTag& tag, std::size_t k) const {
+    if (tag.saddle_index[k] < 0) {
+      return std::nullopt;
+    }
+    const Eigen::Vector2d uv(k == 1 || k == 2 ? 1.0 : 0.0, k >= 2 ? 1.0 : 0.0);
+    const auto map = [&](const Eigen::Vector2d& offset) {
+      return Eigen::Vector2d(tag.map(uv + offset) - tag.corners_px[k]);
+    };
+    RefineOptions refine = refine_;
+    refine.max_shift_px =
+        options_.max_refine_shift_px * search.saddles[static_cast<std::size_t>(tag.saddle_index[k])].scale_px;
+    return refineBySymmetry(search.gray, tag.corners_px[k], map, refine);
+  }
+
+  bool isClearOfBorder(const cv::Mat& gray, const Eigen::Vector2d& px) const {
+    const double margin_px = options_.min_border_distance_px;
+    return px.x() >= margin_px && px.y() >= margin_px && px.x() <= gray.cols - 1 - margin_px &&
+           px.y() <= gray.rows - 1 - margin_px;
   }
 
   target::AprilGrid grid_;

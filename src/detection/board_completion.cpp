@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kSearchRadius = 0.15;  ///< around a predicted corner [tag sides]; the nearest other corner is a gap away
+constexpr double kMinSearchRadius_px = 2.0;
+constexpr int kMinSeenCorners = 3;
 
 /// The tags found so far, by their place on the board.
 class TagTable {
@@ -93,29 +95,52 @@ int nearestSaddle(const BoardSearch& search, const Eigen::Vector2d& px, const Ei
   return best;
 }
 
-std::optional<PlacedTag> seekTag(const BoardSearch& search, const std::array<Eigen::Vector2d, 4>& predicted_px,
-                                 int tag_index) {
+double areaOf(const std::array<Eigen::Vector2d, 4>& corners) {
+  const Eigen::Vector2d a = corners[2] - corners[0];
+  const Eigen::Vector2d b = corners[3] - corners[1];
+  return 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+}
+
+/// Saddles at the predicted corners. A corner that has none stays at its prediction, moved as the others were.
+std::optional<PlacedTag> matchCorners(const BoardSearch& search, const std::array<Eigen::Vector2d, 4>& predicted_px,
+                                      int tag_index) {
   const Eigen::Vector2d centre = 0.25 * (predicted_px[0] + predicted_px[1] + predicted_px[2] + predicted_px[3]);
-  const double side_px =
-      std::sqrt(0.5 * std::abs((predicted_px[2] - predicted_px[0]).x() * (predicted_px[3] - predicted_px[1]).y() -
-                               (predicted_px[2] - predicted_px[0]).y() * (predicted_px[3] - predicted_px[1]).x()));
-  std::array<int, 4> saddles{};
-  std::array<Eigen::Vector2d, 4> px;
+  const double radius_px = std::max(kMinSearchRadius_px, kSearchRadius * std::sqrt(areaOf(predicted_px)));
+  PlacedTag tag{tag_index, {}, predicted_px, TagMap(predicted_px)};
+  Eigen::Vector2d shift_sum = Eigen::Vector2d::Zero();
+  int num_seen = 0;
   for (std::size_t k = 0; k < 4; ++k) {
-    saddles[k] = nearestSaddle(search, predicted_px[k], centre, std::max(2.0, kSearchRadius * side_px));
-    if (saddles[k] < 0) {
-      return std::nullopt;
+    tag.saddle_index[k] = nearestSaddle(search, predicted_px[k], centre, radius_px);
+    if (tag.saddle_index[k] >= 0) {
+      tag.corners_px[k] = search.saddles[static_cast<std::size_t>(tag.saddle_index[k])].px;
+      shift_sum += tag.corners_px[k] - predicted_px[k];
+      ++num_seen;
     }
-    px[k] = search.saddles[static_cast<std::size_t>(saddles[k])].px;
   }
-  const TagMap map(px);
-  const auto reading = search.reader.read(search.gray, map, search.grid.border_cells, search.grid.tag_spacing_ratio);
-  constexpr int kTopLeft = 0;
-  if (!reading || search.reader.hammingTo(*reading, search.grid.code_offset + tag_index, kTopLeft) >
-                      maxHammingWherePlaced(search.reader.family())) {
+  if (num_seen < kMinSeenCorners) {
     return std::nullopt;
   }
-  return PlacedTag{tag_index, saddles, map};
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (tag.saddle_index[k] < 0) {
+      tag.corners_px[k] += shift_sum / num_seen;
+    }
+  }
+  tag.map = TagMap(tag.corners_px);
+  return tag;
+}
+
+/// The missing tag, if its payload can be read between saddles at its predicted corners.
+std::optional<PlacedTag> seekTag(const BoardSearch& search, const std::array<Eigen::Vector2d, 4>& predicted_px,
+                                 int tag_index) {
+  const auto tag = matchCorners(search, predicted_px, tag_index);
+  if (!tag) {
+    return std::nullopt;
+  }
+  const auto reading = search.reader.read(search.gray, tag->map, search.grid.border_cells, search.grid.tag_spacing_ratio);
+  constexpr int kTopLeft = 0;
+  const bool is_tag = reading && search.reader.hammingTo(*reading, search.grid.code_offset + tag_index, kTopLeft) <=
+                                     maxHammingWherePlaced(search.reader.family());
+  return is_tag ? tag : std::nullopt;
 }
 
 /// One round over the missing tags; true if any was found.
@@ -161,9 +186,9 @@ void bendMaps(const BoardSearch& search, std::vector<PlacedTag>& tags) {
       const bool right = i == -1 || i == 1;
       const bool bottom = j == -1 || j == 1;
       const std::size_t corner = bottom ? (right ? 2U : 3U) : (right ? 1U : 0U);
-      return search.saddles[static_cast<std::size_t>(owner->saddle_index[corner])].px;
+      return owner->saddle_index[corner] < 0 ? std::nullopt : std::optional<Eigen::Vector2d>(owner->corners_px[corner]);
     };
-    maps.push_back(mapFromLattice(search.grid.tag_spacing_ratio, pixelAt));
+    maps.push_back(bentMap(search.grid.tag_spacing_ratio, tag.corners_px, pixelAt));
   }
   for (std::size_t i = 0; i < tags.size(); ++i) {
     tags[i].map = maps[i];

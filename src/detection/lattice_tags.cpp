@@ -25,6 +25,14 @@ std::optional<std::array<int, 4>> faceCorners(const SaddleLattice& lattice, int 
   return complete ? std::optional<std::array<int, 4>>(corners) : std::nullopt;
 }
 
+std::array<Eigen::Vector2d, 4> pixelsOf(const BoardSearch& search, const std::array<int, 4>& saddles) {
+  std::array<Eigen::Vector2d, 4> px;
+  for (std::size_t k = 0; k < 4; ++k) {
+    px[k] = search.saddles[static_cast<std::size_t>(saddles[k])].px;
+  }
+  return px;
+}
+
 std::vector<Face> readDarkFaces(const BoardSearch& search, const SaddleLattice& lattice) {
   std::vector<Face> faces;
   for (const LatticeNode& node : lattice.nodes()) {
@@ -36,7 +44,8 @@ std::vector<Face> readDarkFaces(const BoardSearch& search, const SaddleLattice& 
       const int index = lattice.saddleIndexAt(node.column + i, node.row + j);
       return index < 0 ? std::nullopt : std::optional<Eigen::Vector2d>(search.saddles[static_cast<std::size_t>(index)].px);
     };
-    Face face{node.column, node.row, *corners, mapFromLattice(search.grid.tag_spacing_ratio, pixelAt), {}, {}};
+    Face face{node.column, node.row, *corners, bentMap(search.grid.tag_spacing_ratio, pixelsOf(search, *corners), pixelAt),
+              {},          {}};
     face.reading = search.reader.read(search.gray, face.map, search.grid.border_cells, search.grid.tag_spacing_ratio);
     if (face.reading) {
       face.match = search.reader.match(*face.reading, search.max_hamming);
@@ -104,13 +113,10 @@ bool isTag(const BoardSearch& search, const PlacementVote& vote, const Face& fac
 }
 
 PlacedTag placedTag(const BoardSearch& search, const Face& face, int tag_index, int top_left) {
-  std::array<int, 4> corners{};
-  std::array<Eigen::Vector2d, 4> px;
-  for (std::size_t k = 0; k < 4; ++k) {
-    corners[k] = face.saddle_index[(k + static_cast<std::size_t>(top_left)) % 4];
-    px[k] = search.saddles[static_cast<std::size_t>(corners[k])].px;
-  }
-  return {tag_index, corners, TagMap(px)};
+  std::array<int, 4> corners = face.saddle_index;
+  std::rotate(corners.begin(), corners.begin() + top_left, corners.end());
+  const auto px = pixelsOf(search, corners);
+  return {tag_index, corners, px, TagMap(px)};
 }
 
 /// Says what a face is that is no tag of the board.

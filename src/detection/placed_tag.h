@@ -26,7 +26,8 @@ struct BoardSearch {
 /// u to the right and v down as printed.
 struct PlacedTag {
   int tag_index = -1;
-  std::array<int, 4> saddle_index = {};
+  std::array<int, 4> saddle_index;            ///< -1 for a corner that is hidden; at most one is
+  std::array<Eigen::Vector2d, 4> corners_px;  ///< of the saddles, or where the hidden corner should be
   TagMap map;
 };
 
@@ -34,11 +35,11 @@ struct PlacedTag {
 /// to half the distance between codes it cannot be taken for another.
 inline int maxHammingWherePlaced(const target::TagFamily& family) { return (family.min_hamming_distance - 1) / 2; }
 
-/// Map of the square with corners (0, 0), (1, 0), (1, 1), (0, 1) of a lattice, bent towards the nodes around it.
-/// `pixelAt(i, j)`, i and j from -1 to 2, gives a node's pixel or nothing; the four corners must exist.
+/// Map of a square of a lattice, its corners (0, 0), (1, 0), (1, 1), (0, 1), bent towards the nodes around it.
+/// `pixelAt(i, j)`, i and j from -1 to 2, gives the pixel of such a node or nothing.
 template <typename PixelAt>
-TagMap mapFromLattice(double gap, const PixelAt& pixelAt) {
-  TagMap map({*pixelAt(0, 0), *pixelAt(1, 0), *pixelAt(1, 1), *pixelAt(0, 1)});
+TagMap bentMap(double gap, const std::array<Eigen::Vector2d, 4>& corners_px, const PixelAt& pixelAt) {
+  TagMap map(corners_px);
   const std::array<double, 4> position = {-gap, 0.0, 1.0, 1.0 + gap};
   std::vector<TagPoint> around;
   for (int j = -1; j <= 2; ++j) {
