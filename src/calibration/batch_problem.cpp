@@ -12,47 +12,38 @@ constexpr int kWarpSize = 2;
 
 bool contains(const std::vector<int>& list, int value) { return std::find(list.begin(), list.end(), value) != list.end(); }
 
-/// Adds the local terms of one image to those of its view.
-class TermsAssembler {
- public:
-  TermsAssembler(const LocalTerms& local, const geometry::Matrix6d& J_xi_pose, solver::BlockTerms& terms)
-      : local_(local), J_xi_pose_(J_xi_pose), terms_(terms) {}
-
-  void addPose() {
-    const geometry::Matrix6d H_pose = local_.H.topLeftCorner<kPoseSize, kPoseSize>();
-    terms_.H_bb += J_xi_pose_.transpose() * H_pose * J_xi_pose_;
-    terms_.g_b += J_xi_pose_.transpose() * local_.g.head<kPoseSize>();
-  }
-
-  /// The shared unknowns at [at, at + size) of the view's list are the local ones at [local_at, local_at + size).
-  struct Part {
-    int at = 0;
-    int local_at = 0;
-    int size = 0;
-  };
-
-  void addShared(const std::vector<Part>& parts) {
-    for (const Part& part : parts) {
-      terms_.g_s.segment(part.at, part.size) += local_.g.segment(part.local_at, part.size);
-      terms_.H_bs.middleCols(part.at, part.size) +=
-          J_xi_pose_.transpose() * local_.H.block(0, part.local_at, kPoseSize, part.size);
-      for (const Part& other : parts) {
-        terms_.H_ss.block(part.at, other.at, part.size, other.size) +=
-            local_.H.block(part.local_at, other.local_at, part.size, other.size);
-      }
-    }
-  }
-
- private:
-  const LocalTerms& local_;
-  const geometry::Matrix6d& J_xi_pose_;
-  solver::BlockTerms& terms_;
+/// The shared unknowns at [at, at + size) of a view's list are the local ones of an image at [local_at, local_at + size).
+struct Part {
+  int at = 0;
+  int local_at = 0;
+  int size = 0;
 };
 
+/// Adds the local terms of one image to those of its view. J_xi_pose = d(xi of T_cam_target) / d(xi of T_rig_target).
+void addImage(const LocalTerms& local, const std::vector<Part>& parts, const geometry::Matrix6d& J_xi_pose,
+              solver::BlockTerms& terms) {
+  terms.cost += local.cost;
+  terms.H_bb += J_xi_pose.transpose() * local.H.topLeftCorner<kPoseSize, kPoseSize>() * J_xi_pose;
+  terms.g_b += J_xi_pose.transpose() * local.g.head<kPoseSize>();
+  for (const Part& part : parts) {
+    terms.g_s.segment(part.at, part.size) += local.g.segment(part.local_at, part.size);
+    terms.H_bs.middleCols(part.at, part.size) +=
+        J_xi_pose.transpose() * local.H.block(0, part.local_at, kPoseSize, part.size);
+    for (const Part& other : parts) {
+      terms.H_ss.block(part.at, other.at, part.size, other.size) +=
+          local.H.block(part.local_at, other.local_at, part.size, other.size);
+    }
+  }
+}
+
 void appendRange(int first, int size, std::vector<int>& list) {
-  for (int i = 0; i < size; ++i) {
+  for (int i = 0; i < size && first != SharedLayout::kHeld; ++i) {
     list.push_back(first + i);
   }
+}
+
+camera::CameraModel withinBounds(const camera::CameraModel& model, const Eigen::VectorXd& parameters) {
+  return camera::withParameters(model, parameters.cwiseMax(camera::lowerBound(model)).cwiseMin(camera::upperBound(model)));
 }
 
 }  // namespace
@@ -83,64 +74,74 @@ BatchProblem::BatchProblem(const Problem& problem, const SolveOptions& options)
       layout_(problem.rig, options),
       board_(problem.target_points),
       losses_(problem.rig.cameras.size()),
-      state_{problem.rig, problem.T_rig_target, problem.board_warp_m},
-      previous_(state_) {
+      state_{problem.rig, problem.T_rig_target, problem.board_warp_m} {
   board_.bend(state_.board_warp_m);
+  for (std::size_t i = 0; i < state_.rig.cameras.size(); ++i) {
+    camera::CameraModel& model = state_.rig.cameras[i].camera.model;
+    if (layout_.intrinsics(static_cast<int>(i)) != SharedLayout::kHeld) {
+      model = withinBounds(model, camera::parameters(model));
+    }
+  }
+  previous_ = state_;
 }
 
-ResidualBlock BatchProblem::residualBlock(int view, const CameraMeasurements& measurements) const {
+int BatchProblem::numParameters(int camera_index) const {
+  return camera::numParameters(state_.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model);
+}
+
+ResidualBlock BatchProblem::residualBlock(std::size_t view, const CameraMeasurements& measurements) const {
   const std::size_t camera_index = static_cast<std::size_t>(measurements.camera_index);
   const RigCamera& rig_camera = state_.rig.cameras[camera_index];
-  return {measurements, board_, rig_camera.camera,
-          rig_camera.T_cam_rig * state_.T_rig_target[static_cast<std::size_t>(view)], losses_[camera_index]};
+  return {measurements, board_, rig_camera.camera, rig_camera.T_cam_rig * state_.T_rig_target[view], losses_[camera_index]};
 }
 
 double BatchProblem::cost(int view) const {
+  const std::size_t k = static_cast<std::size_t>(view);
   double sum = 0.0;
-  for (const CameraMeasurements& image : views_[static_cast<std::size_t>(view)]) {
-    sum += blockCost(residualBlock(view, image));
+  for (const CameraMeasurements& image : views_[k]) {
+    sum += blockCost(residualBlock(k, image));
   }
   return sum;
 }
 
-solver::BlockTerms BatchProblem::linearize(int view) const {
-  const ViewMeasurements& images = views_[static_cast<std::size_t>(view)];
-  solver::BlockTerms terms;
-  std::vector<std::vector<TermsAssembler::Part>> parts(images.size());
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const int camera_index = images[i].camera_index;
-    const int num_parameters =
-        camera::numParameters(state_.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model);
-    const auto touch = [&](int offset, int local_at, int size) {
-      if (offset != SharedLayout::kHeld) {
-        parts[i].push_back({static_cast<int>(terms.shared.size()), local_at, size});
-        appendRange(offset, size, terms.shared);
-      }
-    };
-    touch(layout_.extrinsics(camera_index), 0, kPoseSize);
-    touch(layout_.intrinsics(camera_index), kPoseSize, num_parameters);
+std::vector<int> BatchProblem::sharedOf(const ViewMeasurements& images) const {
+  std::vector<int> shared;
+  for (const CameraMeasurements& image : images) {
+    appendRange(layout_.extrinsics(image.camera_index), kPoseSize, shared);
+    appendRange(layout_.intrinsics(image.camera_index), numParameters(image.camera_index), shared);
   }
-  const int warp_at = static_cast<int>(terms.shared.size());
-  if (layout_.warp() != SharedLayout::kHeld) {
-    appendRange(layout_.warp(), kWarpSize, terms.shared);
-  }
+  appendRange(layout_.warp(), kWarpSize, shared);
+  return shared;
+}
 
-  const Eigen::Index size = static_cast<Eigen::Index>(terms.shared.size());
+solver::BlockTerms BatchProblem::linearize(int view) const {
+  const std::size_t k = static_cast<std::size_t>(view);
+  const bool with_warp = layout_.warp() != SharedLayout::kHeld;
+  solver::BlockTerms terms;
+  terms.shared = sharedOf(views_[k]);
+  const int size = static_cast<int>(terms.shared.size());
   terms.H_ss = Eigen::MatrixXd::Zero(size, size);
   terms.g_s = Eigen::VectorXd::Zero(size);
   terms.H_bs = solver::BlockRows::Zero(solver::kBlockSize, size);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const LocalTerms local = linearizeBlock(residualBlock(view, images[i]));
-    if (layout_.warp() != SharedLayout::kHeld) {
-      parts[i].push_back({warp_at, static_cast<int>(local.g.size()) - kWarpSize, kWarpSize});
+
+  int at = 0;  // in the order of sharedOf
+  for (const CameraMeasurements& image : views_[k]) {
+    std::vector<Part> parts;
+    const auto addPart = [&](int offset, int local_at, int part_size) {
+      if (offset != SharedLayout::kHeld) {
+        parts.push_back({at, local_at, part_size});
+        at += part_size;
+      }
+    };
+    const int num_parameters = numParameters(image.camera_index);
+    addPart(layout_.extrinsics(image.camera_index), 0, kPoseSize);
+    addPart(layout_.intrinsics(image.camera_index), kPoseSize, num_parameters);
+    if (with_warp) {
+      parts.push_back({size - kWarpSize, kPoseSize + num_parameters, kWarpSize});
     }
     // T_cam_rig exp(xi) = exp(Ad(T_cam_rig) xi) T_cam_rig.
-    const RigCamera& rig_camera = state_.rig.cameras[static_cast<std::size_t>(images[i].camera_index)];
-    const geometry::Matrix6d J_xi_pose = geometry::adjoint(rig_camera.T_cam_rig);
-    terms.cost += local.cost;
-    TermsAssembler assembler(local, J_xi_pose, terms);
-    assembler.addPose();
-    assembler.addShared(parts[i]);
+    const RigCamera& rig_camera = state_.rig.cameras[static_cast<std::size_t>(image.camera_index)];
+    addImage(linearizeBlock(residualBlock(k, image), with_warp), parts, geometry::adjoint(rig_camera.T_cam_rig), terms);
   }
   return terms;
 }
@@ -174,8 +175,7 @@ void BatchProblem::move(const solver::Step& step) {
     if (intrinsics != SharedLayout::kHeld) {
       camera::CameraModel& model = rig_camera.camera.model;
       const Eigen::VectorXd old = camera::parameters(model);
-      const Eigen::VectorXd moved = old + step.shared.segment(intrinsics, old.size());
-      model = camera::withParameters(model, moved.cwiseMax(camera::lowerBound(model)).cwiseMin(camera::upperBound(model)));
+      model = withinBounds(model, old + step.shared.segment(intrinsics, old.size()));
     }
   }
   for (std::size_t k = 0; k < state_.T_rig_target.size(); ++k) {

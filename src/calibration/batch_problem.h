@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "observations.h"
@@ -38,13 +40,17 @@ class BatchProblem : public solver::BlockProblem {
 
   const SolveState& state() const { return state_; }
   const SharedLayout& layout() const { return layout_; }
-  const WarpedBoard& board() const { return board_; }
   const std::vector<ViewMeasurements>& views() const { return views_; }
   std::vector<ViewMeasurements>& views() { return views_; }
 
   /// One loss per camera.
   void setLosses(std::vector<RobustLoss> losses) { losses_ = std::move(losses); }
   void setPose(std::size_t view, const geometry::Rigid3& T_rig_target) { state_.T_rig_target[view] = T_rig_target; }
+
+  /// Measured minus predicted of every corner of an image in that view; empty where the model gives it no image.
+  std::vector<std::optional<Eigen::Vector2d>> errors(std::size_t view, const CameraMeasurements& image) const {
+    return blockErrors(residualBlock(view, image));
+  }
 
   int numShared() const override { return layout_.size(); }
   int numBlocks() const override { return static_cast<int>(views_.size()); }
@@ -55,7 +61,10 @@ class BatchProblem : public solver::BlockProblem {
   void undo() override;
 
  private:
-  ResidualBlock residualBlock(int view, const CameraMeasurements& measurements) const;
+  int numParameters(int camera_index) const;
+  /// The shared unknowns that a view's images touch.
+  std::vector<int> sharedOf(const ViewMeasurements& images) const;
+  ResidualBlock residualBlock(std::size_t view, const CameraMeasurements& measurements) const;
 
   std::vector<ViewMeasurements> views_;
   SharedLayout layout_;

@@ -22,18 +22,17 @@ void check(const Problem& problem, const observation::CameraView& image, std::si
   if (image.camera_index < 0 || image.camera_index >= static_cast<int>(problem.rig.cameras.size())) {
     failAt(view, image.camera_index, "the rig has " + std::to_string(problem.rig.cameras.size()) + " cameras");
   }
+  const auto name = [](const observation::Corner& corner) { return "corner " + std::to_string(corner.corner_id); };
   for (const observation::Corner& corner : image.corners) {
-    const std::string name = "corner " + std::to_string(corner.corner_id);
     if (corner.corner_id < 0 || corner.corner_id >= static_cast<int>(problem.target_points.size())) {
       failAt(view, image.camera_index,
-             name + " is not on the target; it has ids below " + std::to_string(problem.target_points.size()));
+             name(corner) + " is not on the target; it has ids below " + std::to_string(problem.target_points.size()));
     }
     if (!corner.px.allFinite()) {
-      failAt(view, image.camera_index, name + " has a position that is not finite");
+      failAt(view, image.camera_index, name(corner) + " has a position that is not finite");
     }
-    const Eigen::LLT<Eigen::Matrix2d> factor(corner.cov_px2);
-    if (!corner.cov_px2.allFinite() || factor.info() != Eigen::Success) {
-      failAt(view, image.camera_index, name + " has a covariance that is not positive definite");
+    if (!corner.cov_px2.allFinite() || !(corner.cov_px2(0, 0) > 0.0) || !(corner.cov_px2.determinant() > 0.0)) {
+      failAt(view, image.camera_index, name(corner) + " has a covariance that is not positive definite");
     }
   }
 }

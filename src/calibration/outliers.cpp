@@ -18,12 +18,6 @@ struct Candidate {
   Eigen::Vector2d error_px;  ///< measured - predicted
 };
 
-std::optional<Eigen::Vector2d> errorOf(const BatchProblem& batch, std::size_t view, int camera_index,
-                                       const Measurement& corner) {
-  const SolveState& state = batch.state();
-  return residual(state.rig, state.T_rig_target[view], batch.board().point(corner.corner_id), camera_index, corner.px);
-}
-
 double medianOf(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -39,11 +33,12 @@ std::vector<std::vector<Candidate>> projectableCorners(BatchProblem& batch) {
   std::vector<std::vector<Candidate>> candidates(batch.state().rig.cameras.size());
   for (std::size_t view = 0; view < batch.views().size(); ++view) {
     for (CameraMeasurements& image : batch.views()[view]) {
-      for (Measurement& corner : image.corners) {
-        const std::optional<Eigen::Vector2d> error_px = errorOf(batch, view, image.camera_index, corner);
-        corner.state = error_px ? CornerState::kUsed : CornerState::kUnprojectable;
-        if (error_px) {
-          candidates[static_cast<std::size_t>(image.camera_index)].push_back({&corner, *error_px});
+      const std::vector<std::optional<Eigen::Vector2d>> errors_px = batch.errors(view, image);
+      for (std::size_t i = 0; i < errors_px.size(); ++i) {
+        Measurement& corner = image.corners[i];
+        corner.state = errors_px[i] ? CornerState::kUsed : CornerState::kUnprojectable;
+        if (errors_px[i]) {
+          candidates[static_cast<std::size_t>(image.camera_index)].push_back({&corner, *errors_px[i]});
         }
       }
     }
@@ -144,15 +139,14 @@ std::vector<double> robustSigmas(const BatchProblem& batch) {
   std::vector<std::vector<double>> magnitudes(batch.state().rig.cameras.size());
   for (std::size_t view = 0; view < batch.views().size(); ++view) {
     for (const CameraMeasurements& image : batch.views()[view]) {
-      for (const Measurement& corner : image.corners) {
-        const std::optional<Eigen::Vector2d> error_px = errorOf(batch, view, image.camera_index, corner);
-        if (corner.state != CornerState::kUsed || !error_px) {
-          continue;
+      std::vector<double>& list = magnitudes[static_cast<std::size_t>(image.camera_index)];
+      const std::vector<std::optional<Eigen::Vector2d>> errors_px = batch.errors(view, image);
+      for (std::size_t i = 0; i < errors_px.size(); ++i) {
+        if (image.corners[i].state == CornerState::kUsed && errors_px[i]) {
+          const Eigen::Vector2d whitened = image.corners[i].sqrt_information * *errors_px[i];
+          list.push_back(std::abs(whitened.x()));
+          list.push_back(std::abs(whitened.y()));
         }
-        const Eigen::Vector2d whitened = corner.sqrt_information * *error_px;
-        std::vector<double>& list = magnitudes[static_cast<std::size_t>(image.camera_index)];
-        list.push_back(std::abs(whitened.x()));
-        list.push_back(std::abs(whitened.y()));
       }
     }
   }

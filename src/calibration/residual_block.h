@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "observations.h"
@@ -44,13 +45,16 @@ struct ResidualBlock {
 double blockCost(const ResidualBlock& block);
 
 /// The same with first derivatives by local unknowns: xi of T_cam_target <- exp(xi) T_cam_target (6), the camera's
-/// parameters, the board's warp (2). H = J'J and g = J'r with J and r weighted, r = predicted - measured.
+/// parameters, the board's warp (2, if asked for). H = J'J and g = J'r with J and r weighted, r = predicted - measured.
 struct LocalTerms {
   double cost = 0.0;
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
 };
 
-LocalTerms linearizeBlock(const ResidualBlock& block);
+LocalTerms linearizeBlock(const ResidualBlock& block, bool with_warp);
+
+/// Measured minus predicted position of every corner, used or not; empty where the model gives it no image.
+std::vector<std::optional<Eigen::Vector2d>> blockErrors(const ResidualBlock& block);
 
 }  // namespace tartan_calib::calibration

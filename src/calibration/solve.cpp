@@ -17,8 +17,9 @@ namespace {
 constexpr std::array<double, 3> kCauchyWidths = {5.0, 2.0, 1.0};  ///< in robust stdevs of each camera's residuals
 constexpr int kMaxSelections = 4;                                 ///< rounds of choosing corners and solving; two are usual
 
-/// A stage has converged when the next step would move no parameter by more than this many of its stdevs.
-constexpr double kAnnealingAccuracy = 1.0;
+/// An annealing stage has converged when the next step would move predictions by a hundredth of the residuals (squared); the
+/// last when it would move no parameter by more than a thousandth of its stdev.
+constexpr double kAnnealingTolerance = 1e-4;
 constexpr double kFinalAccuracy = 1e-3;
 constexpr double kExactResidual_px = 1e-9;  ///< data without noise are fitted to this rms
 
@@ -56,16 +57,14 @@ SolveStatus statusOf(solver::Status status) {
 
 UsedCorners usedCorners(const BatchProblem& batch) {
   UsedCorners used;
-  const SolveState& state = batch.state();
   for (std::size_t view = 0; view < batch.views().size(); ++view) {
     for (const CameraMeasurements& image : batch.views()[view]) {
-      for (const Measurement& corner : image.corners) {
-        const std::optional<Eigen::Vector2d> error_px = residual(
-            state.rig, state.T_rig_target[view], batch.board().point(corner.corner_id), image.camera_index, corner.px);
-        if (corner.state == CornerState::kUsed && error_px) {
+      const std::vector<std::optional<Eigen::Vector2d>> errors_px = batch.errors(view, image);
+      for (std::size_t i = 0; i < errors_px.size(); ++i) {
+        if (image.corners[i].state == CornerState::kUsed && errors_px[i]) {
           ++used.num_corners;
-          used.sum_of_squares_px2 += error_px->squaredNorm();
-          used.sum_of_whitened_squares += (corner.sqrt_information * *error_px).squaredNorm();
+          used.sum_of_squares_px2 += errors_px[i]->squaredNorm();
+          used.sum_of_whitened_squares += (image.corners[i].sqrt_information * *errors_px[i]).squaredNorm();
         }
       }
     }
@@ -98,7 +97,7 @@ class BatchSolve {
         losses.push_back({RobustLoss::Kind::kCauchy, kCauchyWidths[static_cast<std::size_t>(stage)] * sigma});
       }
       batch_.setLosses(std::move(losses));
-      minimize(stage, kAnnealingAccuracy);
+      minimize(stage, kAnnealingTolerance);
     }
   }
 
@@ -112,21 +111,22 @@ class BatchSolve {
       if (!selectCorners(options_, batch_) && i > 0) {
         return;
       }
-      if (usedCorners(batch_).num_corners == 0) {
+      const int num_corners = usedCorners(batch_).num_corners;
+      if (num_corners == 0) {
         throw CalibrationError("no corner fits the start of the solve; the start values are too far off");
       }
-      minimize(numAnnealingStages() + i, kFinalAccuracy);
+      // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
+      minimize(numAnnealingStages() + i, kFinalAccuracy * kFinalAccuracy / (2.0 * num_corners));
     }
   }
 
-  void minimize(int stage, double accuracy) {
+  void minimize(int stage, double relative_tolerance) {
     const double num_residuals = 2.0 * std::max(1, usedCorners(batch_).num_corners);
     solver::Options options;
     options.linear_solver = solverChoice(options_.linear_solver);
     options.num_threads = options_.num_threads;
     options.max_iterations = options_.max_iterations;
-    // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
-    options.relative_tolerance = accuracy * accuracy / num_residuals;
+    options.relative_tolerance = relative_tolerance;
     options.absolute_tolerance = 0.5 * num_residuals * kExactResidual_px * kExactResidual_px;
     if (options_.progress) {
       options.progress = [&, stage, num_residuals](int iteration, double cost) {
