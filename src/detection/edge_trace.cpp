@@ -10,13 +10,12 @@
 namespace tartan_calib::detection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMaxArmMismatch_rad = 0.5;  ///< between the edge as followed and the arm that it arrives at
-constexpr double kMinSupport = 0.2;          ///< light minus dark across the edge, in units of the saddle's contrast
-constexpr int kMaxUnsupportedSteps = 2;      ///< in a row; more is the end of the edge
-constexpr int kTaps = 5;                     ///< samples across the edge
-constexpr double kOffsetGain = 0.6;          ///< share of the measured offset that a step corrects
-constexpr double kTurnGain = 0.25;           ///< share of the corrected step that turns the direction
+constexpr double kMinArmMatch = 0.88;    ///< cosine between the edge as followed and the arm that it arrives at
+constexpr double kMinSupport = 0.2;      ///< light minus dark across the edge, in units of the saddle's contrast
+constexpr int kMaxUnsupportedSteps = 2;  ///< in a row; more is the end of the edge
+constexpr int kTaps = 5;                 ///< samples across the edge
+constexpr double kOffsetGain = 0.6;      ///< share of the measured offset that a step corrects
+constexpr double kTurnGain = 0.25;       ///< share of the corrected step that turns the direction
 
 /// Saddles by square cells of the image.
 class SaddleIndex {
@@ -73,17 +72,24 @@ struct CrossSection {
 class EdgeTracer {
  public:
   EdgeTracer(const cv::Mat& gray, const std::vector<Saddle>& saddles)
-      : gray_(gray), saddles_(saddles), index_(saddles, gray.size()) {}
+      : gray_(gray), saddles_(saddles), index_(saddles, gray.size()) {
+    for (const Saddle& saddle : saddles) {
+      std::array<Eigen::Vector2d, 4> directions;
+      for (std::size_t arm = 0; arm < 4; ++arm) {
+        directions[arm] = {std::cos(saddle.arm_rad[arm]), std::sin(saddle.arm_rad[arm])};
+      }
+      arm_directions_.push_back(directions);
+    }
+  }
 
   /// The arm of another saddle at which the edge that leaves by `arm` arrives.
   ArmLink follow(int from, int arm) const {
     const Saddle& start = saddles_[static_cast<std::size_t>(from)];
-    const double angle_rad = start.arm_rad[static_cast<std::size_t>(arm)];
     const double step_px = start.scale_px;
     const double max_length_px = gray_.cols + gray_.rows;
     // Seen along an even arm, dark lies clockwise, to the right.
     const double to_light = arm % 2 == 0 ? -1.0 : 1.0;
-    Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
+    Eigen::Vector2d direction = arm_directions_[static_cast<std::size_t>(from)][static_cast<std::size_t>(arm)];
     Eigen::Vector2d px = start.px + kFirstStep * step_px * direction;
     int unsupported = 0;
     for (double length_px = kFirstStep * step_px; length_px < max_length_px; length_px += step_px) {
@@ -118,7 +124,6 @@ class EdgeTracer {
   /// A saddle close to `px` with an arm that points back along the edge.
   ArmLink arrival(int from, int arm, const Eigen::Vector2d& px, const Eigen::Vector2d& direction) const {
     const double from_scale_px = saddles_[static_cast<std::size_t>(from)].scale_px;
-    const double back_rad = std::atan2(-direction.y(), -direction.x());
     constexpr double kLargestScale_px = 8.0;
     ArmLink best;
     double best_distance_px = std::numeric_limits<double>::max();
@@ -130,9 +135,8 @@ class EdgeTracer {
         return;
       }
       for (const int back_arm : {1 - arm % 2, 3 - arm % 2}) {
-        const double mismatch_rad =
-            std::remainder(candidate.arm_rad[static_cast<std::size_t>(back_arm)] - back_rad, 2.0 * kPi);
-        if (std::abs(mismatch_rad) < kMaxArmMismatch_rad) {
+        const Eigen::Vector2d& back = arm_directions_[static_cast<std::size_t>(i)][static_cast<std::size_t>(back_arm)];
+        if (-back.dot(direction) > kMinArmMatch) {
           best = {i, back_arm};
           best_distance_px = distance_px;
         }
@@ -167,6 +171,7 @@ class EdgeTracer {
   const cv::Mat& gray_;
   const std::vector<Saddle>& saddles_;
   SaddleIndex index_;
+  std::vector<std::array<Eigen::Vector2d, 4>> arm_directions_;
 };
 
 }  // namespace

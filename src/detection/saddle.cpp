@@ -280,12 +280,13 @@ std::vector<Level> buildPyramid(const cv::Mat& gray, int num_levels) {
   return levels;
 }
 
+/// A coarser level must show more contrast by 1.4 per level to be preferred, for it is less exact.
+double merit(const Saddle& saddle) { return saddle.contrast / std::sqrt(saddle.scale_px); }
+
 /// Of saddles that lie on each other keeps the strongest, the sharper where they are about as strong.
 std::vector<Saddle> suppressDuplicates(std::vector<Saddle> saddles, const cv::Size& size) {
-  constexpr int kCell_px = 16;                   // no smaller than the largest suppression radius
-  constexpr double kContrastGainPerLevel = 1.4;  // a coarser level must show more by this factor to be preferred
-  const auto merit = [](const Saddle& s) { return s.contrast * std::pow(kContrastGainPerLevel, -std::log2(s.scale_px)); };
-  std::sort(saddles.begin(), saddles.end(), [&merit](const Saddle& a, const Saddle& b) {
+  constexpr int kCell_px = 16;  // no smaller than the largest suppression radius
+  std::sort(saddles.begin(), saddles.end(), [](const Saddle& a, const Saddle& b) {
     return std::make_tuple(-merit(a), a.scale_px, a.px.y(), a.px.x()) <
            std::make_tuple(-merit(b), b.scale_px, b.px.y(), b.px.x());
   });

@@ -7,6 +7,12 @@
 
 #include "bilinear.h"
 
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TARTAN_CALIB_POPCOUNT __attribute__((target_clones("popcnt", "default")))
+#else
+#define TARTAN_CALIB_POPCOUNT
+#endif
+
 namespace tartan_calib::detection {
 namespace {
 
@@ -152,6 +158,22 @@ std::optional<double> sampleCell(const cv::Mat& gray, const TagMap& map, const E
 
 int countBits(std::uint64_t bits) { return static_cast<int>(std::bitset<64>(bits).count()); }
 
+struct NearestCode {
+  std::size_t id = 0;
+  int hamming = 64;
+};
+
+TARTAN_CALIB_POPCOUNT NearestCode nearestCode(const std::vector<std::uint64_t>& codes, std::uint64_t code) {
+  NearestCode nearest;
+  for (std::size_t id = 0; id < codes.size(); ++id) {
+    const int hamming = __builtin_popcountll(code ^ codes[id]);
+    if (hamming < nearest.hamming) {
+      nearest = {id, hamming};
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::optional<TagReading> TagReader::read(const cv::Mat& gray, const TagMap& map, int border_cells, double gap) const {
@@ -175,7 +197,10 @@ std::optional<TagReading> TagReader::read(const cv::Mat& gray, const TagMap& map
   }
   TagReading reading;
   for (const double sharpening : kSharpenings) {
-    reading.codes.push_back(grid.threshold(sharpening));
+    const std::uint64_t code = grid.threshold(sharpening);
+    if (reading.codes.empty() || code != reading.codes.back()) {
+      reading.codes.push_back(code);
+    }
   }
   return reading;
 }
@@ -209,11 +234,9 @@ std::optional<TagMatch> TagReader::match(const TagReading& reading, int max_hamm
   best.hamming = max_hamming + 1;
   for (std::uint64_t code : reading.codes) {
     for (int top_left = 0; top_left < 4; ++top_left) {
-      for (std::size_t id = 0; id < family_.codes.size(); ++id) {
-        const int hamming = countBits(code ^ family_.codes[id]);
-        if (hamming < best.hamming) {
-          best = {static_cast<int>(id), top_left, hamming};
-        }
+      const NearestCode nearest = nearestCode(family_.codes, code);
+      if (nearest.hamming < best.hamming) {
+        best = {static_cast<int>(nearest.id), top_left, nearest.hamming};
       }
       code = turned(code);
     }
