@@ -24,6 +24,9 @@ struct PseudoInverse {
 
 /// Pseudo-inverse of H whose smallness is judged against `scale`, a positive diagonal.
 PseudoInverse pseudoInverse(const Eigen::MatrixXd& H, const Eigen::VectorXd& scale) {
+  if (H.rows() == 0) {  // everything is held: Eigen's solver does not take empty matrices
+    return {Eigen::MatrixXd(0, 0), Eigen::MatrixXd(0, 0), 0};
+  }
   const Eigen::VectorXd unit = scale.cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * H * unit.asDiagonal());
   const Eigen::Index size = H.rows();
