@@ -1,0 +1,33 @@
+#include "simulate/simulate.h"
+
+#include <iostream>
+
+#include "common/program.h"
+
+namespace {
+
+using namespace tartan_calib::apps;
+
+int run(int argc, char** argv) {
+  if (argc == 1) {
+    std::cout << simulateHelp();
+    return kWrongUsage;
+  }
+  const auto options = parseSimulateOptions({argv + 1, argv + argc});
+  if (!options) {
+    std::cout << simulateHelp();
+    return kSuccess;
+  }
+  const SimulateSummary summary = simulate(*options);
+  std::cout << "Rendered " << summary.num_images << " images with " << summary.num_visible_corners << " visible of "
+            << summary.num_corners << " corners to " << options->output_bag << options->output_dir << '\n'
+            << "Target: " << summary.base << "-target.yaml\n"
+            << "Truth:  " << summary.base << "-truth-{camchain.yaml,poses.csv,corners.csv}\n";
+  return kSuccess;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runProgram([&] { return run(argc, argv); });
+}
