@@ -1,0 +1,227 @@
+#include "tartan_calib/solver/levenberg_marquardt.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "random_problem.h"
+#include "support/derivative_check.h"
+
+namespace tartan_calib::solver {
+namespace {
+
+/// Rosenbrock's valley, r = (10 (y - x^2), 1 - x), with an own unknown of one block that wants to be x.
+class Rosenbrock : public BlockProblem {
+ public:
+  double x = -1.2;
+  double y = 1.0;
+  double max_x = std::numeric_limits<double>::infinity();
+  double b = 0.0;
+
+  int numShared() const override { return 2; }
+  int numBlocks() const override { return 1; }
+  StepLimits stepLimits() const override {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {Eigen::Vector2d(-kInfinity, -kInfinity), Eigen::Vector2d(max_x - x, kInfinity)};
+  }
+  double cost(int /*block*/) const override { return 0.5 * residuals().squaredNorm(); }
+  BlockTerms linearize(int /*block*/) const override {
+    Eigen::Matrix<double, 3, 2> J_s;
+    J_s << -20.0 * x, 10.0, -1.0, 0.0, 1.0, 0.0;
+    const Eigen::Vector3d J_b(0.0, 0.0, -1.0);
+    BlockTerms terms;
+    terms.cost = cost(0);
+    terms.shared = {0, 1};
+    terms.H_ss = J_s.transpose() * J_s;
+    terms.g_s = J_s.transpose() * residuals();
+    terms.H_bs = BlockRows::Zero(kBlockSize, 2);
+    terms.H_bs.row(0) = J_b.transpose() * J_s;
+    terms.H_bb(0, 0) = J_b.squaredNorm();
+    terms.g_b(0) = J_b.dot(residuals());
+    return terms;
+  }
+  void move(const Step& step) override {
+    previous_ = {x, y, b};
+    x = std::min(max_x, x + step.shared(0));
+    y += step.shared(1);
+    b += step.blocks[0](0);
+  }
+  void undo() override {
+    x = previous_.x();
+    y = previous_.y();
+    b = previous_.z();
+  }
+
+ private:
+  Eigen::Vector3d residuals() const { return {10.0 * (y - x * x), 1.0 - x, x - b}; }
+
+  Eigen::Vector3d previous_;
+};
+
+/// The default tolerance promises the cost to 1e-12, unknowns to about its root.
+constexpr double kAccuracy = 1e-6;
+
+class BothSolvers : public testing::TestWithParam<LinearSolver> {
+ protected:
+  static Options options() {
+    Options options;
+    options.linear_solver = GetParam();
+    options.absolute_tolerance = 1e-24;
+    return options;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(LinearSolver, BothSolvers, testing::Values(LinearSolver::kSchur, LinearSolver::kSparse),
+                         [](const auto& test) { return test.param == LinearSolver::kSchur ? "schur" : "sparse"; });
+
+TEST_P(BothSolvers, FindRosenbrocksMinimum) {
+  Rosenbrock problem;
+  const Summary summary = minimize(problem, options());
+  EXPECT_EQ(summary.status, Status::kConverged);
+  EXPECT_NEAR(problem.x, 1.0, 1e-9);
+  EXPECT_NEAR(problem.y, 1.0, 1e-9);
+  EXPECT_NEAR(problem.b, 1.0, 1e-9);
+}
+
+TEST_P(BothSolvers, StopAtABoundAndLetTheOthersAdapt) {
+  Rosenbrock problem;
+  problem.max_x = 0.5;
+  const Summary summary = minimize(problem, options());
+  EXPECT_EQ(summary.status, Status::kConverged);
+  EXPECT_EQ(problem.x, 0.5);
+  EXPECT_NEAR(problem.y, 0.25, kAccuracy);
+  EXPECT_NEAR(problem.b, 0.5, kAccuracy);
+}
+
+TEST_P(BothSolvers, LeaveABoundThatTheMinimumDoesNotTouch) {
+  RandomProblem free({});
+  minimize(free, options());
+  RandomProblem bounded({});
+  for (int i = 0; i < bounded.numShared(); ++i) {
+    // Starts on a bound from which the minimum lies inwards.
+    bounded.setBounds(i, free.shared()(i) > 0.0 ? 0.0 : -10.0, free.shared()(i) > 0.0 ? 10.0 : 0.0);
+  }
+  EXPECT_EQ(minimize(bounded, options()).status, Status::kConverged);
+  EXPECT_LT((bounded.shared() - free.shared()).norm(), kAccuracy);
+}
+
+TEST_P(BothSolvers, SolveLinearLeastSquaresExactly) {
+  RandomProblemOptions linear;
+  linear.bend = 0.0;
+  RandomProblem problem(linear);
+  const DenseSystem dense = denseSystem(problem);
+  const Eigen::VectorXd expected = -dense.H.ldlt().solve(dense.g);
+  EXPECT_EQ(minimize(problem, options()).status, Status::kConverged);
+  EXPECT_LT((problem.shared() - expected.head(problem.numShared())).norm(), 1e-9);
+  for (int k = 0; k < problem.numBlocks(); ++k) {
+    const auto own = expected.segment<kBlockSize>(problem.numShared() + kBlockSize * k);
+    EXPECT_LT((problem.own()[static_cast<std::size_t>(k)] - own).norm(), 1e-9);
+  }
+}
+
+TEST_P(BothSolvers, LeaveUndeterminedUnknownsWhereTheyAre) {
+  RandomProblemOptions sizes;
+  RandomProblem problem(sizes);
+  for (RandomProblem::Block& block : problem.blocks) {
+    for (int i = 0; i < sizes.num_touched; ++i) {
+      if (block.touched[static_cast<std::size_t>(i)] == 3) {
+        block.A.col(i).setZero();
+      }
+    }
+  }
+  problem.blocks[5].A.setZero();
+  problem.blocks[5].B.setZero();
+  const Summary summary = minimize(problem, options());
+  EXPECT_EQ(summary.status, Status::kConverged);
+  EXPECT_TRUE(problem.shared().allFinite());
+  EXPECT_EQ(problem.shared()(3), 0.0);
+  EXPECT_EQ(problem.own()[5].norm(), 0.0);
+  const DenseSystem dense = denseSystem(problem);
+  EXPECT_LT(dense.g.norm(), kAccuracy * dense.H.norm());
+}
+
+TEST(LevenbergMarquardt, SchurAndSparseAgree) {
+  RandomProblemOptions sizes;
+  sizes.num_blocks = 100;
+  RandomProblem schur(sizes);
+  RandomProblem sparse(sizes);
+  for (RandomProblem* problem : {&schur, &sparse}) {
+    problem->setBounds(2, -0.001, 0.001);
+    Options options;
+    options.linear_solver = problem == &schur ? LinearSolver::kSchur : LinearSolver::kSparse;
+    minimize(*problem, options);
+  }
+  EXPECT_LT((schur.shared() - sparse.shared()).norm(), 1e-10);
+  EXPECT_EQ(std::abs(schur.shared()(2)), 0.001);
+}
+
+TEST(LevenbergMarquardt, GivesTheSameBitsForAnyNumberOfThreads) {
+  const auto solved = [](int num_threads) {
+    RandomProblem problem({});
+    Options options;
+    options.num_threads = num_threads;
+    minimize(problem, options);
+    return problem.shared();
+  };
+  const Eigen::VectorXd one = solved(1);
+  EXPECT_TRUE((solved(2).array() == one.array()).all());
+  EXPECT_TRUE((solved(3).array() == one.array()).all());
+}
+
+TEST(LevenbergMarquardt, NeverRaisesTheCost) {
+  Rosenbrock problem;
+  double last_cost = problem.cost(0);
+  Options options;
+  options.progress = [&](int /*iteration*/, double cost) {
+    EXPECT_LT(cost, last_cost);
+    last_cost = cost;
+    return true;
+  };
+  const Summary summary = minimize(problem, options);
+  EXPECT_EQ(summary.final_cost, last_cost);
+  EXPECT_GT(summary.iterations, 3);
+}
+
+TEST(LevenbergMarquardt, StopsWhenAskedTo) {
+  Rosenbrock problem;
+  Options options;
+  options.progress = [](int iteration, double /*cost*/) { return iteration < 2; };
+  const Summary summary = minimize(problem, options);
+  EXPECT_EQ(summary.status, Status::kCancelled);
+  EXPECT_EQ(summary.iterations, 2);
+}
+
+TEST(LevenbergMarquardt, SaysWhenIterationsRunOut) {
+  Rosenbrock problem;
+  Options options;
+  options.max_iterations = 2;
+  EXPECT_EQ(minimize(problem, options).status, Status::kMaxIterations);
+}
+
+/// States the gradient of one unknown with the wrong sign.
+class WrongJacobian : public RandomProblem {
+ public:
+  using RandomProblem::RandomProblem;
+  BlockTerms linearize(int k) const override {
+    BlockTerms terms = RandomProblem::linearize(k);
+    terms.g_s(0) = -terms.g_s(0);
+    return terms;
+  }
+};
+
+TEST(LevenbergMarquardt, ReportsThatItStallsOnAWrongJacobian) {
+  WrongJacobian problem{RandomProblemOptions()};
+  EXPECT_NE(minimize(problem, {}).status, Status::kConverged);
+}
+
+TEST(DerivativeCheck, TellsARightJacobianFromAWrongOne) {
+  constexpr double kStep = 1e-5;
+  RandomProblem right({});
+  WrongJacobian wrong{RandomProblemOptions()};
+  EXPECT_LT(test_support::gradientError(right, kStep), 1e-6);
+  EXPECT_GT(test_support::gradientError(wrong, kStep), 0.1);
+}
+
+}  // namespace
+}  // namespace tartan_calib::solver
