@@ -6,8 +6,10 @@
 #include <sensor_msgs/Imu.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 
 #include "tartan_calib/error.h"
@@ -30,6 +32,8 @@ class MakeBag : public ::testing::Test {
     cv::imwrite((folder_ / name).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(value)));
   }
   void writeText(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  static std::string pixels(int value) { return std::string(6 * 8, static_cast<char>(value)); }
+  static std::string doubleBytes(double value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); }
   std::string bag() const { return (folder_ / "out.bag").string(); }
 
   fs::path folder_;
@@ -45,12 +49,14 @@ TEST_F(MakeBag, StoresImagesAndImuByIncreasingStamp) {
   EXPECT_EQ(contents.num_images, 3U);
   EXPECT_EQ(contents.num_imu_samples, 2U);
 
-  rosbag::Bag stored(bag());
-  std::vector<std::string> order;
-  for (const rosbag::MessageInstance& message : rosbag::View(stored)) {
-    order.push_back(message.getTopic());
+  std::ifstream file(bag(), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::vector<std::size_t> positions;
+  for (const std::string& content : {doubleBytes(9.81), pixels(10), pixels(20), doubleBytes(9.8), pixels(30)}) {
+    positions.push_back(bytes.find(content));
+    EXPECT_NE(positions.back(), std::string::npos);
   }
-  EXPECT_EQ(order, (std::vector<std::string>{"/imu0", "/cam0/image_raw", "/cam1/image_raw", "/imu0", "/cam0/image_raw"}));
+  EXPECT_TRUE(std::is_sorted(positions.begin(), positions.end()));
 }
 
 TEST_F(MakeBag, KeepsStampsPixelsAndRates) {
