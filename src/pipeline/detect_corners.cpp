@@ -140,7 +140,9 @@ CameraCorners detectCorners(const CameraStream& stream, int camera_index, const 
       report(listener, progress);
     }
   }
-  return collector.finish(camera_index);
+  CameraCorners corners = collector.finish(camera_index);
+  corners.topic = stream.topic;
+  return corners;
 }
 
 }  // namespace tartan_calib::pipeline

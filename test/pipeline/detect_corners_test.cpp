@@ -63,6 +63,7 @@ TEST(DetectCorners, FindsTheBoardWhereItWasDrawn) {
   const Pinhole pinhole;
   const CameraCorners corners = detect(boardImages(3));
   ASSERT_EQ(corners.images.size(), 3U);
+  EXPECT_EQ(corners.topic, "/cam0/image_raw");
   EXPECT_EQ(corners.width, 640);
   EXPECT_EQ(corners.height, 480);
   EXPECT_EQ(corners.counts.tags, 3 * 16);
