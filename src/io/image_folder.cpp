@@ -169,14 +169,15 @@ std::vector<pipeline::CameraStream> openImageFolder(const std::string& folder, c
   checkOptions(options);
   const std::vector<std::string> known = imageFolderTopics(folder);
   std::vector<pipeline::CameraStream> streams;
-  for (const std::string& topic : topics) {
-    const std::string camera = cameraName(topic);
-    if (std::find(known.begin(), known.end(), "/" + camera + kTopicSuffix) == known.end()) {
+  for (const std::string& asked : topics) {
+    const std::string camera = cameraName(asked);
+    const std::string topic = "/" + camera + kTopicSuffix;
+    if (std::find(known.begin(), known.end(), topic) == known.end()) {
       std::string list;
       for (const std::string& name : known) {
         list += (list.empty() ? "" : ", ") + name;
       }
-      throw InputError("folder " + folder + " has no images for topic " + topic + "; its image topics: " + list);
+      throw InputError("folder " + folder + " has no images for topic " + asked + "; its image topics: " + list);
     }
     const std::vector<StampedFile> all = listImages(fs::path(folder) / camera, topic, options);
     const auto files = std::make_shared<const std::vector<StampedFile>>(selected(all, topic, options));

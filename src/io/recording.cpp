@@ -28,7 +28,8 @@ void checkOptions(const RecordingOptions& options) {
     throw InputError("the time window " + windowText(*options.window) + " is empty: its start must be smaller than its end");
   }
   if (options.max_rate_hz && !(*options.max_rate_hz > 0.0 && std::isfinite(*options.max_rate_hz))) {
-    throw InputError("the image rate must be a positive number of images per second");
+    throw InputError("the image rate must be a positive number of images per second, not " +
+                     std::to_string(*options.max_rate_hz));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -39,13 +40,20 @@ struct TopicIndex {
   std::string unreadable_reason;  ///< of the first one
 };
 
-std::shared_ptr<SharedBag> openShared(const std::string& path) {
+void checkIsBag(const std::string& path) {
   if (!std::filesystem::exists(path)) {
-    throw InputError("bag " + path + " does not exist");
+    throw InputError("bag " + path + " does not exist: check the path");
   }
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path + " is not a bag file");
+  const std::string magic = "#ROSBAG V";
+  std::string begin(magic.size(), '\0');
+  if (!std::ifstream(path, std::ios::binary).read(&begin[0], static_cast<std::streamsize>(begin.size())) || begin != magic) {
+    throw InputError(path +
+                     " is not a ROS 1 bag, or cannot be read; bags of ROS 2 need to be converted, e.g. by rosbags-convert");
   }
+}
+
+std::shared_ptr<SharedBag> openShared(const std::string& path) {
+  checkIsBag(path);
   auto shared = std::make_shared<SharedBag>();
   shared->path = path;
   try {
@@ -53,8 +61,7 @@ std::shared_ptr<SharedBag> openShared(const std::string& path) {
   } catch (const rosbag::BagUnindexedException&) {
     throw InputError("bag " + path + " has no index, as after an interrupted recording: run 'rosbag reindex " + path + "'");
   } catch (const std::exception& error) {
-    throw InputError("cannot read bag " + path + " (" + error.what() +
-                     "): if it is a ROS 1 bag, it may be damaged or cut off; " + "try 'rosbag reindex " + path + "'");
+    throw InputError("bag " + path + " is damaged or cut off (" + error.what() + "): run 'rosbag reindex " + path + "'");
   }
   return shared;
 }

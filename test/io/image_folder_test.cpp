@@ -67,7 +67,13 @@ TEST_F(ImageFolder, OrdersImagesByStampNotByName) {
     write(std::string("cam0/") + name);
   }
   EXPECT_EQ(stamps("/cam0/image_raw"), (std::vector<std::int64_t>{30, 999, 1000, 1606153907495166540}));
-  EXPECT_EQ(stamps("cam0").size(), 4U);
+}
+
+TEST_F(ImageFolder, UnderstandsTheNameOfACameraForItsTopic) {
+  write("cam0/1.png");
+  for (const char* name : {"cam0", "/cam0", "cam0/image_raw", "/cam0/image_raw"}) {
+    EXPECT_EQ(openImageFolder(folder_.string(), {name}, options_).front().topic, "/cam0/image_raw");
+  }
 }
 
 TEST_F(ImageFolder, LoadsImagesAsEightBitGrey) {

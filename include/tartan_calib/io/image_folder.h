@@ -12,8 +12,8 @@ namespace tartan_calib::io {
 /// `/<camera>/image_raw` for each subfolder with images, cam2 before cam10. Throws InputError where the folder has none.
 std::vector<std::string> imageFolderTopics(const std::string& folder);
 
-/// Opens topics of such a folder; `/<camera>` is understood too. Files whose names are no stamps are left out and told of.
-/// Throws InputError for a topic without a subfolder or without images.
+/// Opens topics of such a folder; `/<camera>` stands for `/<camera>/image_raw`. Files whose names are no stamps are left out
+/// and told of. Throws InputError for a topic without a subfolder or without images.
 std::vector<pipeline::CameraStream> openImageFolder(const std::string& folder, const std::vector<std::string>& topics,
                                                     const RecordingOptions& options);
 

@@ -1,6 +1,7 @@
 #include "calibrate_cameras/inputs.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "common/program.h"
@@ -39,10 +40,19 @@ void applyInit(const std::string& path, Inputs& inputs) {
   }
 }
 
-std::string joined(const std::vector<pipeline::CameraCorners>& cameras) {
+template <class WithTopic>
+std::vector<std::string> topicsOf(const std::vector<WithTopic>& cameras) {
+  std::vector<std::string> topics;
+  for (const WithTopic& camera : cameras) {
+    topics.push_back(camera.topic);
+  }
+  return topics;
+}
+
+std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  for (const pipeline::CameraCorners& camera : cameras) {
-    text += (text.empty() ? "" : ", ") + camera.topic;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : ", ") + word;
   }
   return text;
 }
@@ -54,7 +64,7 @@ std::vector<pipeline::CameraCorners> openCorners(const std::string& path, const 
   for (const std::string& topic : topics) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& camera) { return camera.topic == topic; });
     if (found == all.end()) {
-      throw InputError("corners file " + path + " has no topic " + topic + "; its topics: " + joined(all));
+      throw InputError("corners file " + path + " has no topic " + topic + "; its topics: " + joined(topicsOf(all)));
     }
     cameras.push_back(*found);
   }
@@ -94,10 +104,7 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
   if (!arguments.corners_file.empty()) {
     inputs.dataset = arguments.corners_file;
     inputs.corners = openCorners(arguments.corners_file, inputs.topics);
-    inputs.topics.clear();
-    for (const pipeline::CameraCorners& camera : inputs.corners) {
-      inputs.topics.push_back(camera.topic);
-    }
+    inputs.topics = topicsOf(inputs.corners);
   } else {
     if (inputs.topics.empty()) {
       throw UsageError("--topics is missing: " + arguments.init_file + " names none");
@@ -111,6 +118,7 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
   }
   if (inputs.corners.empty()) {
     inputs.streams = openStreams(arguments, inputs.topics, warn);
+    inputs.topics = topicsOf(inputs.streams);
   }
   return inputs;
 }
