@@ -122,9 +122,9 @@ class AprilGridMethod : public DetectionMethod {
   }
 
   bool isClearOfBorder(const cv::Mat& gray, const Eigen::Vector2d& px) const {
-    const double margin_px = options_.min_border_distance_px;
-    return px.x() >= margin_px && px.y() >= margin_px && px.x() <= gray.cols - 1 - margin_px &&
-           px.y() <= gray.rows - 1 - margin_px;
+    const double to_edge_px = 0.5 + std::min({px.x(), px.y(), gray.cols - 1 - px.x(),
+                                              gray.rows - 1 - px.y()});  // the edge of a pixel, not its centre
+    return to_edge_px >= options_.min_border_distance_px;
   }
 
   target::AprilGrid grid_;

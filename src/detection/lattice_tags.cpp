@@ -16,6 +16,7 @@ struct Face {
   TagMap map;
   std::optional<TagReading> reading;
   std::optional<TagMatch> match;
+  bool has_other_border = false;  ///< a tag, but with the other border width; reading and match are empty then
 };
 
 std::optional<std::array<int, 4>> faceCorners(const SaddleLattice& lattice, int column, int row) {
@@ -33,6 +34,25 @@ std::array<Eigen::Vector2d, 4> pixelsOf(const BoardSearch& search, const std::ar
   return px;
 }
 
+/// With the wrong border the cells are sampled askew, which may leave few wrong bits: the border with fewer is the right
+/// one.
+void readFace(const BoardSearch& search, Face& face) {
+  const double gap = search.grid.tag_spacing_ratio;
+  face.reading = search.reader.read(search.gray, face.map, search.grid.border_cells, gap);
+  face.match = face.reading ? search.reader.match(*face.reading, search.max_hamming) : std::nullopt;
+  if (face.match && face.match->hamming == 0) {
+    return;
+  }
+  const int other_border = search.grid.border_cells == 1 ? 2 : 1;
+  const auto other_reading = search.reader.read(search.gray, face.map, other_border, gap);
+  const int max_hamming = face.match ? face.match->hamming - 1 : search.max_hamming;
+  face.has_other_border = other_reading && search.reader.match(*other_reading, max_hamming);
+  if (face.has_other_border) {
+    face.reading.reset();
+    face.match.reset();
+  }
+}
+
 std::vector<Face> readDarkFaces(const BoardSearch& search, const SaddleLattice& lattice) {
   std::vector<Face> faces;
   for (const LatticeNode& node : lattice.nodes()) {
@@ -46,10 +66,7 @@ std::vector<Face> readDarkFaces(const BoardSearch& search, const SaddleLattice& 
     };
     Face face{node.column, node.row, *corners, bentMap(search.grid.tag_spacing_ratio, pixelsOf(search, *corners), pixelAt),
               {},          {}};
-    face.reading = search.reader.read(search.gray, face.map, search.grid.border_cells, search.grid.tag_spacing_ratio);
-    if (face.reading) {
-      face.match = search.reader.match(*face.reading, search.max_hamming);
-    }
+    readFace(search, face);
     faces.push_back(std::move(face));
   }
   return faces;
@@ -123,24 +140,26 @@ PlacedTag placedTag(const BoardSearch& search, const Face& face, int tag_index, 
 void countOther(const BoardSearch& search, const Face& face, DetectionCounts& counts) {
   if (face.match) {
     ++counts.foreign_tags;
-    return;
-  }
-  if (face.reading && search.reader.matchMirrored(*face.reading, search.max_hamming)) {
-    ++counts.mirrored_tags;
-    return;
-  }
-  const int other_border = search.grid.border_cells == 1 ? 2 : 1;
-  const auto reading = search.reader.read(search.gray, face.map, other_border, search.grid.tag_spacing_ratio);
-  if (reading && search.reader.match(*reading, search.max_hamming)) {
+  } else if (face.has_other_border) {
     ++counts.other_border_tags;
+  } else if (face.reading && search.reader.matchMirrored(*face.reading, search.max_hamming)) {
+    ++counts.mirrored_tags;
   }
 }
 
 }  // namespace
 
 std::vector<PlacedTag> findLatticeTags(const BoardSearch& search, const SaddleLattice& lattice, DetectionCounts& counts) {
-  const auto faces = readDarkFaces(search, lattice);
-  const auto vote = placeOnBoard(search, faces);
+  auto faces = readDarkFaces(search, lattice);
+  auto vote = placeOnBoard(search, faces);
+  const auto num_other = std::count_if(faces.begin(), faces.end(), [](const Face& face) { return face.has_other_border; });
+  if (vote && num_other > vote->num_votes) {  // by chance some codes survive the askew sampling
+    vote.reset();
+    for (Face& face : faces) {
+      face.has_other_border = face.has_other_border || face.match;
+      face.match.reset();
+    }
+  }
   std::vector<PlacedTag> tags;
   for (const Face& face : faces) {
     const auto tag_index = vote ? tagAt(search.grid, vote->placement, face) : std::nullopt;

@@ -11,6 +11,8 @@ namespace tartan_calib::detection {
 namespace {
 
 constexpr double kSampleSpacing_px = 0.8;
+constexpr double kBorderReserve_px = 1.2;  ///< for gradients, interpolation and the first steps
+constexpr double kMaxReach = 4.0;          ///< of a sample, in largest half windows: more is no map of a board
 constexpr double kConvergedStep_px = 1e-3;
 constexpr double kAcceptedStep_px = 0.02;  ///< of the last iteration allowed
 /// Linear change of light, relative, that is usual within a window; keeps the estimate still where the window is dark.
@@ -30,18 +32,21 @@ struct SampleSet {
   double reach_px = 0.0;  ///< of the farthest sample
 };
 
-/// Half of the window in board units along one board axis, within the bounds in pixels.
-double axisHalfWindow(const BoardToPixelOffset& map, const Eigen::Vector2d& axis, const RefineOptions& options) {
+/// Half of the window in board units along one board axis, at most `max_px` and at least options.min_half_window_px.
+double axisHalfWindow(const BoardToPixelOffset& map, const Eigen::Vector2d& axis, const RefineOptions& options,
+                      double max_px) {
   const double length_px = 0.5 * (map(options.half_window * axis) - map(-options.half_window * axis)).norm();
   if (!(length_px > 0.0)) {
     return 0.0;
   }
-  return options.half_window * std::clamp(length_px, options.min_half_window_px, options.max_half_window_px) / length_px;
+  return options.half_window * std::clamp(length_px, options.min_half_window_px, max_px) / length_px;
 }
 
-SampleSet makeSamples(const BoardToPixelOffset& map, const RefineOptions& options) {
-  const Eigen::Vector2d axis_u = Eigen::Vector2d::UnitX() * axisHalfWindow(map, Eigen::Vector2d::UnitX(), options);
-  const Eigen::Vector2d axis_v = Eigen::Vector2d::UnitY() * axisHalfWindow(map, Eigen::Vector2d::UnitY(), options);
+SampleSet makeSamples(const BoardToPixelOffset& map, const RefineOptions& options, double max_half_window_px) {
+  const Eigen::Vector2d axis_u =
+      Eigen::Vector2d::UnitX() * axisHalfWindow(map, Eigen::Vector2d::UnitX(), options, max_half_window_px);
+  const Eigen::Vector2d axis_v =
+      Eigen::Vector2d::UnitY() * axisHalfWindow(map, Eigen::Vector2d::UnitY(), options, max_half_window_px);
   const Eigen::Vector2d u_px = map(axis_u);
   const Eigen::Vector2d v_px = map(axis_v);
   const int num_u = std::max(2, static_cast<int>(std::ceil(u_px.norm() / kSampleSpacing_px)));
@@ -67,15 +72,12 @@ class Patch {
     Eigen::Vector2d gradient_per_px;
   };
 
-  /// Square of half-size `reach_px` around `centre`; `isInside` is false where the image does not hold it.
+  /// Square of half-size `reach_px` around `centre`, as far as the image goes.
   Patch(const cv::Mat& image, const Eigen::Vector2d& centre, double reach_px) {
     const int reach = static_cast<int>(std::ceil(reach_px)) + 2;  // one for the gradient, one for interpolation
-    const cv::Rect box(static_cast<int>(std::lround(centre.x())) - reach, static_cast<int>(std::lround(centre.y())) - reach,
-                       2 * reach + 1, 2 * reach + 1);
-    is_inside_ = (box & cv::Rect({0, 0}, image.size())) == box;
-    if (!is_inside_) {
-      return;
-    }
+    const cv::Rect box = cv::Rect(static_cast<int>(std::lround(centre.x())) - reach,
+                                  static_cast<int>(std::lround(centre.y())) - reach, 2 * reach + 1, 2 * reach + 1) &
+                         cv::Rect({0, 0}, image.size());
     origin_ = Eigen::Vector2d(box.x, box.y);
     cv::Mat1f gray;
     image(box).convertTo(gray, CV_32F);
@@ -87,7 +89,12 @@ class Patch {
     }
   }
 
-  bool isInside() const { return is_inside_; }
+  /// True if `at` is possible for all points within `reach_px` along each axis.
+  bool holds(const Eigen::Vector2d& px, double reach_px) const {
+    const Eigen::Vector2d local = px - origin_;
+    return local.x() - reach_px >= 1.0 && local.y() - reach_px >= 1.0 && local.x() + reach_px < values_.cols - 2 &&
+           local.y() + reach_px < values_.rows - 2;
+  }
 
   Value at(const Eigen::Vector2d& px) const {
     const Eigen::Vector2d local = px - origin_;
@@ -102,7 +109,6 @@ class Patch {
   }
 
  private:
-  bool is_inside_ = false;
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   cv::Mat_<cv::Vec3f> values_;
 };
@@ -176,18 +182,24 @@ std::optional<RefinedCorner> conclude(const NormalEquations& normal, const Sampl
 
 std::optional<RefinedCorner> refineBySymmetry(const cv::Mat& gray, const Eigen::Vector2d& start_px,
                                               const BoardToPixelOffset& map, const RefineOptions& options) {
-  const SampleSet samples = makeSamples(map, options);
-  if (!std::isfinite(samples.reach_px) || samples.reach_px > 4.0 * options.max_half_window_px) {
+  const double to_border_px =
+      std::min(start_px.minCoeff(), std::min(gray.cols - 1 - start_px.x(), gray.rows - 1 - start_px.y()));
+  const double max_reach_px = to_border_px - kBorderReserve_px;
+  SampleSet samples = makeSamples(map, options, options.max_half_window_px);
+  if (samples.reach_px > max_reach_px) {
+    samples = makeSamples(map, options, std::max(options.min_half_window_px, max_reach_px / std::sqrt(2.0)));
+  }
+  if (!(samples.reach_px <= std::min(max_reach_px, kMaxReach * options.max_half_window_px))) {
     return std::nullopt;
   }
-  const Patch patch(gray, start_px, samples.reach_px + options.max_shift_px + 0.5);
-  if (!patch.isInside()) {
-    return std::nullopt;
-  }
+  const Patch patch(gray, start_px, samples.reach_px + options.max_shift_px);
   Eigen::Vector2d centre = start_px;
   NormalEquations normal;
   double step_px = std::numeric_limits<double>::max();
   for (int iteration = 0; iteration < options.max_iterations && step_px > kConvergedStep_px; ++iteration) {
+    if (!patch.holds(centre, samples.reach_px)) {
+      return std::nullopt;
+    }
     normal = linearize(patch, samples, centre);
     const Eigen::Vector2d step = normal.matrix.ldlt().solve(normal.right).head<2>();
     step_px = step.norm();
@@ -196,7 +208,7 @@ std::optional<RefinedCorner> refineBySymmetry(const cv::Mat& gray, const Eigen::
       return std::nullopt;
     }
   }
-  if (step_px > kAcceptedStep_px) {
+  if (step_px > kAcceptedStep_px || !patch.holds(centre, samples.reach_px)) {
     return std::nullopt;
   }
   auto corner = conclude(normal, samples, windowContrast(patch, samples, centre), options);

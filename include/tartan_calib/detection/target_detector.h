@@ -12,8 +12,8 @@ namespace tartan_calib::detection {
 
 /// Filters with Kalibr's defaults.
 struct DetectorOptions {
-  double min_border_distance_px = 4.0;              ///< a tag with a corner closer to the image border is dropped
-  int max_hamming = 1;                              ///< bit errors that a tag's payload may have
+  double min_border_distance_px = 4.0;  ///< a tag with a corner closer to the edge of the image, at -0.5, is dropped
+  int max_hamming = 1;                  ///< bit errors that a tag's payload may have
   double max_refine_shift_px = 1.2247448713915890;  ///< a corner that refinement moves further is dropped (sqrt 1.5)
 };
 
