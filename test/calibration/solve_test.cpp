@@ -2,106 +2,416 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
-#include "support/simulated_scene.h"
+#include "solve_scenes.h"
 #include "tartan_calib/error.h"
 
 namespace tartan_calib::calibration {
 namespace {
 
-using test_support::Random;
-using test_support::Scene;
-using test_support::SceneOptions;
+constexpr double kNoise_px = 0.2;
 
-constexpr int kWidth = 1224;
-constexpr int kHeight = 1024;
-
-geometry::Rigid3 randomMotion(Random& random, double sigma_m, double sigma_rad) {
-  geometry::Vector6d xi;
-  for (int i = 0; i < 6; ++i) {
-    xi(i) = test_support::normal(random, i < 3 ? sigma_m : sigma_rad);
+int totalUsed(const Solution& solution) {
+  int used = 0;
+  for (const CornerCounts& counts : solution.counts) {
+    used += counts.used;
   }
-  return geometry::expRigid(xi);
+  return used;
 }
 
-/// Cameras side by side, each turned a little, all of one kind.
-Rig rowOfCameras(const std::vector<std::string>& models, double fov_rad, Random& random) {
-  Rig rig;
-  for (const std::string& model : models) {
-    const double i = static_cast<double>(rig.cameras.size());
-    geometry::Vector6d xi;
-    xi << -0.1 * i, 0.01 * i, 0.005 * i, 0.02 * i, 0.1 * i, -0.03 * i;
-    rig.cameras.push_back({test_support::randomCamera(model, fov_rad, kWidth, kHeight, random), geometry::expRigid(xi)});
-  }
-  return rig;
+int numCorners(std::vector<observation::View> views) {
+  int num_corners = 0;
+  test_support::forEachCorner(views, [&](observation::Corner&) { ++num_corners; });
+  return num_corners;
 }
 
-Problem exactProblem(const Scene& scene) {
-  return {scene.target_points, scene.views, scene.rig, scene.T_rig_target, Eigen::Vector2d::Zero()};
-}
-
-/// Moves all start values off the truth, as far as a start without images of the solver's quality would.
-void disturbStart(Problem& problem, Random& random) {
-  for (std::size_t i = 0; i < problem.rig.cameras.size(); ++i) {
-    camera::CameraModel& model = problem.rig.cameras[i].camera.model;
-    Eigen::VectorXd parameters = camera::parameters(model);
-    const int focal = camera::focalIndex(model);
-    parameters.segment<2>(focal) *= 1.02;
-    parameters.segment<2>(focal + 2) += Eigen::Vector2d(4.0, -3.0);
-    model = camera::withParameters(model, parameters);
-    if (i > 0) {
-      problem.rig.cameras[i].T_cam_rig = randomMotion(random, 0.005, 0.005) * problem.rig.cameras[i].T_cam_rig;
-    }
-  }
-  for (geometry::Rigid3& T_rig_target : problem.T_rig_target) {
-    T_rig_target = randomMotion(random, 0.01, 0.01) * T_rig_target;
-  }
-}
-
-class EveryModel : public testing::TestWithParam<std::string> {};
-
-double widestFov(const std::string& model) {
-  return model == "pinhole-none" || model == "pinhole-radtan" ? 1.4 : model == "pinhole-fov" ? 2.6 : 3.2;
-}
-
-TEST_P(EveryModel, ExactCornersGiveTheExactCamera) {
-  Random random(7);
+Scene sceneOf(const std::vector<std::string>& models, int num_views, unsigned seed = 7) {
+  Random random(seed);
   SceneOptions options;
-  options.num_views = 30;
-  const Scene scene = test_support::simulateScene(rowOfCameras({GetParam()}, widestFov(GetParam()), random), options);
+  options.num_views = num_views;
+  options.seed = seed;
+  return test_support::simulateScene(rowOfCameras(models, random), options);
+}
+
+/// Estimate minus truth in units of the predicted stdev.
+Eigen::ArrayXd normalisedErrors(const Solution& solution, const Rig& truth) {
+  const Eigen::VectorXd error = errorVector(solution.rig, truth);
+  return error.array() / solution.covariance.diagonal().head(error.size()).array().sqrt();
+}
+
+/// Noise alone exceeds this once in 1.7 million parameters.
+constexpr double kMaxNormalisedError = 5.0;
+
+class SolveOfEveryModel : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Solve, SolveOfEveryModel, testing::ValuesIn(camera::modelNames()),
+                         [](const auto& test) { return testName(test.param); });
+
+TEST_P(SolveOfEveryModel, ExactCornersGiveTheExactRig) {
+  const Scene scene = sceneOf({GetParam(), "ds-none"}, 30);
   Problem problem = exactProblem(scene);
+  Random random(1);
   disturbStart(problem, random);
   const Solution solution = solve(problem, {});
 
   EXPECT_EQ(solution.status, SolveStatus::kConverged);
+  EXPECT_EQ(totalUsed(solution), numCorners(scene.views));
   EXPECT_LT(solution.sigma_px, 1e-7);
-  const Eigen::VectorXd truth = camera::parameters(scene.rig.cameras[0].camera.model);
-  const Eigen::VectorXd found = camera::parameters(solution.rig.cameras[0].camera.model);
+  const Eigen::VectorXd truth = parametersOf(scene.rig, 0);
+  const Eigen::VectorXd found = parametersOf(solution.rig, 0);
   EXPECT_LT(((found - truth).array() / truth.array().abs().max(1.0)).abs().maxCoeff(), 1e-6) << found.transpose();
+  EXPECT_LT(geometry::logRigid(baselineOf(solution.rig, 1) * baselineOf(scene.rig, 1).inverse()).norm(), 1e-7);
   for (std::size_t k = 0; k < scene.views.size(); ++k) {
     EXPECT_LT(geometry::logRigid(solution.T_rig_target[k] * scene.T_rig_target[k].inverse()).norm(), 1e-6);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solve, EveryModel, testing::ValuesIn(camera::modelNames()), [](const auto& test) {
-  std::string name = test.param;
-  name[name.find('-')] = '_';
-  return name;
-});
-
-TEST(Solve, ResidualStdevIsTheInjectedNoise) {
-  constexpr double kNoise_px = 0.2;
-  Random random(3);
-  Scene scene = test_support::simulateScene(rowOfCameras({"ds-none", "pinhole-equi"}, 2.8, random), {});
-  test_support::addNoise(scene.views, kNoise_px, 5);
-  Problem problem = exactProblem(scene);
+TEST_P(SolveOfEveryModel, NoiseGivesErrorsOfThePredictedSize) {
+  const Scene scene = sceneOf({GetParam()}, 40);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  Random random(1);
   disturbStart(problem, random);
+  const Solution solution = solve(problem, {});
+  EXPECT_EQ(solution.status, SolveStatus::kConverged);
+  EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.1 * kNoise_px);
+  EXPECT_EQ(solution.sigma_whitened, solution.sigma_px);
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+  EXPECT_TRUE(solution.undetermined.empty());
+}
+
+TEST(Solve, ErrorsFollowThePredictedCovarianceOverManyRecordings) {
+  constexpr int kRecordings = 60;
+  const Scene scene = sceneOf({"ds-none", "pinhole-equi"}, 12);
+  double sum_of_chi_squares = 0.0;
+  Eigen::Index num_parameters = 0;
+  for (unsigned seed = 0; seed < kRecordings; ++seed) {
+    SolveOptions options;
+    options.remove_outliers = false;
+    const Solution solution = solve(noisyProblem(scene, kNoise_px, 100 + seed), options);
+    const Eigen::VectorXd error = errorVector(solution.rig, scene.rig);
+    sum_of_chi_squares += error.dot(solution.covariance.ldlt().solve(error));
+    num_parameters = error.size();
+  }
+  // Chi-square of kRecordings * num_parameters degrees of freedom, four of its stdevs.
+  const double expected = static_cast<double>(kRecordings * num_parameters);
+  EXPECT_NEAR(sum_of_chi_squares, expected, 4.0 * std::sqrt(2.0 * expected));
+}
+
+TEST(Solve, WeighsCornersByTheirCovariance) {
+  constexpr int kRecordings = 30;
+  const Scene scene = sceneOf({"ds-none"}, 10);
+  double weighted_error2 = 0.0;
+  double unweighted_error2 = 0.0;
+  for (unsigned seed = 0; seed < kRecordings; ++seed) {
+    Random random(seed);
+    Problem problem = exactProblem(scene);
+    test_support::forEachCorner(problem.views, [&](observation::Corner& corner) {
+      // Blurred along one direction: four corners of five are good for little there.
+      const double angle_rad = test_support::uniform(random, 0.0, M_PI);
+      const Eigen::Matrix2d R = Eigen::Rotation2Dd(angle_rad).toRotationMatrix();
+      const Eigen::Vector2d sigma_px(0.1, test_support::uniform(random, 0.0, 1.0) < 0.8 ? 1.0 : 0.1);
+      corner.cov_px2 = R * sigma_px.cwiseAbs2().asDiagonal() * R.transpose();
+      corner.px +=
+          R * Eigen::Vector2d(test_support::normal(random, sigma_px.x()), test_support::normal(random, sigma_px.y()));
+    });
+    const Solution weighted = solve(problem, {});
+    EXPECT_NEAR(weighted.sigma_whitened, 1.0, 0.1);
+    EXPECT_LT(normalisedErrors(weighted, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+    weighted_error2 += errorVector(weighted.rig, scene.rig).squaredNorm();
+    test_support::forEachCorner(problem.views, [](observation::Corner& corner) { corner.cov_px2.setIdentity(); });
+    unweighted_error2 += errorVector(solve(problem, {}).rig, scene.rig).squaredNorm();
+  }
+  EXPECT_LT(weighted_error2, 0.25 * unweighted_error2);
+}
+
+TEST(Solve, RejectsWrongCornersAndHardlyAnyOther) {
+  const Scene scene = sceneOf({"ds-none", "omni-radtan"}, 50);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  const int num_wrong = test_support::addWrongCorners(problem.views, 0.1, 20.0, 6);
+  Random random(1);
+  disturbStart(problem, random);
+  const Solution solution = solve(problem, {});
+  EXPECT_EQ(solution.status, SolveStatus::kConverged);
+  EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.02 * kNoise_px);
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+  // A few wrong corners fall within four stdevs by chance, a few right ones beyond (1 of 8000).
+  const int num_rejected = numCorners(scene.views) - totalUsed(solution);
+  EXPECT_NEAR(num_rejected, num_wrong, 0.01 * num_wrong);
+  EXPECT_EQ(numCorners(solution.views), numCorners(problem.views));
+}
+
+TEST(Solve, SurvivesWrongCornersInFiveViews) {
+  const Scene scene = sceneOf({"ds-none"}, 5);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  test_support::addWrongCorners(problem.views, 0.2, 20.0, 6);
+  Random random(1);
+  disturbStart(problem, random);
+  const Solution solution = solve(problem, {});
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+  EXPECT_GT(solution.counts[0].outliers, 0);
+}
+
+TEST(Solve, KeepsEveryCornerWhereOutliersShallStay) {
+  const Scene scene = sceneOf({"ds-none"}, 25);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  test_support::addWrongCorners(problem.views, 0.05, 10.0, 6);
   SolveOptions options;
   options.remove_outliers = false;
+  const Solution plain = solve(problem, options);
+  EXPECT_EQ(totalUsed(plain), numCorners(problem.views));
+
+  options.use_blake_zisserman = true;
+  const Solution robust = solve(problem, options);
+  EXPECT_EQ(totalUsed(robust), numCorners(problem.views));
+  EXPECT_LT(errorVector(robust.rig, scene.rig).norm(), 0.5 * errorVector(plain.rig, scene.rig).norm());
+}
+
+TEST(Solve, FindsExtrinsicsThroughACameraInBetween) {
+  Scene scene = sceneOf({"pinhole-radtan", "ds-none", "pinhole-equi"}, 90);
+  // Neither cam0 and cam2 ever see the board together: one of them misses each view.
+  for (std::size_t k = 0; k < scene.views.size(); ++k) {
+    std::vector<observation::CameraView>& images = scene.views[k].cameras;
+    const int missing = k % 2 == 0 ? 0 : 2;
+    images.erase(std::remove_if(images.begin(), images.end(),
+                                [missing](const observation::CameraView& image) { return image.camera_index == missing; }),
+                 images.end());
+  }
+  Problem problem = noisyProblem(scene, 0.1, 5);
+  Random random(1);
+  disturbStart(problem, random);
+  const Solution solution = solve(problem, {});
+  for (const std::size_t i : {1U, 2U}) {
+    const geometry::Rigid3& found = solution.rig.cameras[i].T_cam_rig;
+    const geometry::Rigid3& truth = scene.rig.cameras[i].T_cam_rig;
+    EXPECT_LT(found.rotation.angularDistance(truth.rotation), 0.2e-3) << "cam" << i;
+    EXPECT_LT((found.translation - truth.translation).norm(), 0.3e-3) << "cam" << i;
+  }
+}
+
+TEST(Solve, DoesNotDependOnWhichCameraIsTheReference) {
+  const Scene scene = sceneOf({"ds-none", "eucm-none"}, 20);
+  const Problem problem = noisyProblem(scene, kNoise_px, 5);
+  Problem swapped = problem;
+  const geometry::Rigid3 T_cam1_cam0 = problem.rig.cameras[1].T_cam_rig;
+  swapped.rig.cameras = {{problem.rig.cameras[1].camera, geometry::Rigid3()},
+                         {problem.rig.cameras[0].camera, T_cam1_cam0.inverse()}};
+  for (std::size_t k = 0; k < swapped.views.size(); ++k) {
+    swapped.T_rig_target[k] = T_cam1_cam0 * problem.T_rig_target[k];
+    for (observation::CameraView& image : swapped.views[k].cameras) {
+      image.camera_index = 1 - image.camera_index;
+    }
+  }
+  const Solution a = solve(problem, {});
+  const Solution b = solve(swapped, {});
+  // Both stop within a thousandth of a stdev of the same minimum.
+  const Eigen::VectorXd sigma = a.covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd difference = parametersOf(a.rig, 0) - parametersOf(b.rig, 1);
+  EXPECT_LT(difference.cwiseQuotient(sigma.segment(intrinsicsRow(a.rig, 0), difference.size())).cwiseAbs().maxCoeff(), 5e-3);
+  EXPECT_LT(geometry::logRigid(baselineOf(a.rig, 1) * baselineOf(b.rig, 1)).norm(), 5e-3 * sigma.head<6>().norm());
+  EXPECT_NEAR(a.sigma_px, b.sigma_px, 1e-6);
+}
+
+TEST(Solve, GivesTheSameBitsForAnyNumberOfThreads) {
+  const Scene scene = sceneOf({"ds-none", "pinhole-equi"}, 40);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  test_support::addWrongCorners(problem.views, 0.02, 20.0, 6);
+  const auto solved = [&](int num_threads) {
+    SolveOptions options;
+    options.num_threads = num_threads;
+    return solve(problem, options);
+  };
+  const Solution one = solved(1);
+  for (const int num_threads : {2, 3}) {
+    const Solution many = solved(num_threads);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_TRUE((parametersOf(many.rig, i).array() == parametersOf(one.rig, i).array()).all());
+    }
+    EXPECT_TRUE((many.covariance.array() == one.covariance.array()).all());
+    EXPECT_EQ(many.sigma_px, one.sigma_px);
+    EXPECT_TRUE(many.T_rig_target.back().matrix() == one.T_rig_target.back().matrix());
+  }
+}
+
+TEST(Solve, LinearSolversAgree) {
+  const Scene scene = sceneOf({"ds-none", "pinhole-equi"}, 20);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  Random random(1);
+  disturbStart(problem, random);
+  SolveOptions options;
+  options.linear_solver = LinearSolver::kSchur;
+  const Solution schur = solve(problem, options);
+  options.linear_solver = LinearSolver::kSparse;
+  const Solution sparse = solve(problem, options);
+  EXPECT_LT(errorVector(sparse.rig, schur.rig).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(Solve, HoldsWhatIsFixed) {
+  const Scene scene = sceneOf({"ds-none", "pinhole-equi", "eucm-none"}, 20);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  SolveOptions options;
+  options.fixed_cameras = {1};
+  Solution solution = solve(problem, options);
+  EXPECT_EQ(parametersOf(solution.rig, 1), parametersOf(scene.rig, 1));
+  EXPECT_NE(parametersOf(solution.rig, 2), parametersOf(scene.rig, 2));
+  EXPECT_EQ(solution.rig.cameras[1].T_cam_rig.matrix(), scene.rig.cameras[1].T_cam_rig.matrix());
+  EXPECT_EQ(solution.covariance.middleRows(intrinsicsRow(scene.rig, 1), 8).norm(), 0.0);
+  EXPECT_EQ(solution.covariance.middleRows(baselineRow(1), 6).norm(), 0.0);
+  EXPECT_GT(solution.covariance.middleRows(baselineRow(2), 6).norm(), 0.0);
+
+  options = {};
+  options.fix_intrinsics = true;
+  options.fix_extrinsics = true;
+  solution = solve(problem, options);
+  EXPECT_EQ(errorVector(solution.rig, scene.rig).norm(), 0.0);
+  EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.1 * kNoise_px);
+}
+
+TEST(Solve, FindsTheBoardsWarp) {
+  const Scene scene = sceneOf({"ds-none"}, 30);
+  const Eigen::Vector2d warp_m(0.002, -0.001);
+  Problem problem = exactProblem(scene);
+  const std::vector<Eigen::Vector3d> bent = warpedPoints(scene.target_points, warp_m);
+  for (std::size_t k = 0; k < problem.views.size(); ++k) {
+    for (observation::Corner& corner : problem.views[k].cameras[0].corners) {
+      corner.px = *camera::project(scene.rig.cameras[0].camera.model,
+                                   scene.T_rig_target[k] * bent[static_cast<std::size_t>(corner.corner_id)]);
+    }
+  }
+  test_support::addNoise(problem.views, kNoise_px, 5);
+  SolveOptions options;
+  options.estimate_board_warp = true;
   const Solution solution = solve(problem, options);
+  const Eigen::Vector2d sigma_m = solution.covariance.diagonal().tail<2>().cwiseSqrt();
+  EXPECT_LT(sigma_m.maxCoeff(), 0.1 * warp_m.norm());
+  EXPECT_LT((solution.board_warp_m - warp_m).cwiseQuotient(sigma_m).cwiseAbs().maxCoeff(), kMaxNormalisedError);
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+}
+
+TEST(Solve, StopsAtABoundAndSaysSo) {
+  // A lens without distortion is EUCM with alpha = 0, the edge of its domain, where beta means nothing.
+  const Scene scene = sceneOf({"pinhole-none"}, 20);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  const Eigen::VectorXd pinhole = parametersOf(scene.rig, 0);
+  Eigen::VectorXd eucm(6);
+  eucm << 0.1, 1.0, pinhole;
+  problem.rig.cameras[0].camera.model = camera::withParameters(camera::modelByName("eucm-none"), eucm);
+  const Solution solution = solve(problem, {});
+  const Eigen::VectorXd found = parametersOf(solution.rig, 0);
+  EXPECT_TRUE(found.allFinite());
+  EXPECT_TRUE((found.array() >= camera::lowerBound(problem.rig.cameras[0].camera.model).array()).all());
+  EXPECT_TRUE((found.array() <= camera::upperBound(problem.rig.cameras[0].camera.model).array()).all());
+  EXPECT_TRUE(solution.covariance.allFinite());
+  EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.1 * kNoise_px);
+}
+
+TEST(Solve, NamesACameraThatNothingDetermines) {
+  Scene scene = sceneOf({"ds-none", "ds-none"}, 20);
+  for (observation::View& view : scene.views) {
+    view.cameras.resize(std::min<std::size_t>(1, view.cameras.size()));
+  }
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  for (std::size_t k = 0; k < problem.views.size(); ++k) {
+    if (!problem.views[k].cameras.empty() && problem.views[k].cameras[0].camera_index == 1) {
+      problem.views[k].cameras.clear();
+    }
+  }
+  const Solution solution = solve(problem, {});
+  EXPECT_EQ(solution.undetermined,
+            (std::vector<std::string>{"cam1 extrinsics", "cam1 projection[0]", "cam1 projection[1]", "cam1 projection[2]",
+                                      "cam1 projection[3]", "cam1 projection[4]", "cam1 projection[5]"}));
+  EXPECT_TRUE(solution.covariance.allFinite());
+  EXPECT_EQ(parametersOf(solution.rig, 1), parametersOf(scene.rig, 1));
+  const Eigen::VectorXd error = parametersOf(solution.rig, 0) - parametersOf(scene.rig, 0);
+  const Eigen::VectorXd sigma = solution.covariance.diagonal().segment(intrinsicsRow(scene.rig, 0), 6).cwiseSqrt();
+  EXPECT_LT(error.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), kMaxNormalisedError);
+}
+
+TEST(Solve, LeavesOutViewsWithTooFewCorners) {
+  const Scene scene = sceneOf({"ds-none"}, 20);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  problem.views[3].cameras[0].corners.resize(3);
+  problem.views[7].cameras.clear();
+  Random random(1);
+  disturbStart(problem, random);
+  const Solution solution = solve(problem, {});
+  EXPECT_EQ(solution.unsolved_views, (std::vector<int>{3, 7}));
+  EXPECT_EQ(solution.counts[0].unsupported, 3);
+  EXPECT_FALSE(solution.views[3].cameras[0].corners[0].used);
+  EXPECT_EQ(solution.T_rig_target[3].matrix(), problem.T_rig_target[3].matrix());
+  EXPECT_EQ(solution.T_rig_target[7].matrix(), problem.T_rig_target[7].matrix());
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+}
+
+TEST(Solve, CountsCornersWithoutImage) {
+  const Scene scene = sceneOf({"pinhole-radtan"}, 20);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  // The board of view 0 passes through the camera's plane: the corners behind it cannot have been seen.
+  problem.T_rig_target[0] = geometry::Rigid3(Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY())),
+                                             Eigen::Vector3d(0.1, 0.0, 0.4));
+  observation::CameraView seen =
+      test_support::visibleCorners(scene.rig.cameras[0].camera, scene.target_points, problem.T_rig_target[0], M_PI);
+  std::vector<observation::Corner>& corners = problem.views[0].cameras[0].corners;
+  corners.clear();
+  int num_behind = 0;
+  for (std::size_t id = 0; id < scene.target_points.size(); ++id) {
+    const Eigen::Vector3d p_cam = problem.T_rig_target[0] * scene.target_points[id];
+    const auto px = camera::project(scene.rig.cameras[0].camera.model, p_cam);
+    if (px && camera::isInside(scene.rig.cameras[0].camera, *px)) {
+      corners.push_back({static_cast<int>(id), *px});
+    } else if (!px && num_behind < 5) {
+      corners.push_back({static_cast<int>(id), Eigen::Vector2d(600.0, 500.0)});
+      ++num_behind;
+    }
+  }
+  ASSERT_EQ(num_behind, 5);
+  const Solution solution = solve(problem, {});
   EXPECT_EQ(solution.status, SolveStatus::kConverged);
-  EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.05 * kNoise_px);
+  EXPECT_EQ(solution.counts[0].unprojectable, num_behind);
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+}
+
+TEST(Solve, ReportsProgressAndStopsWhenAskedTo) {
+  const Scene scene = sceneOf({"ds-none"}, 10);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  Random random(1);
+  disturbStart(problem, random);
+  SolveOptions options;
+  std::vector<SolveProgress> reports;
+  options.progress = [&](const SolveProgress& progress) {
+    reports.push_back(progress);
+    return true;
+  };
+  const Solution solution = solve(problem, options);
+  ASSERT_EQ(static_cast<int>(reports.size()), solution.iterations);
+  EXPECT_EQ(reports.front().stage, 0);
+  EXPECT_LT(reports.back().stage, reports.back().num_stages);
+  EXPECT_NEAR(reports.back().rms_px, std::sqrt(2.0) * kNoise_px, 0.1 * kNoise_px);
+
+  int num_calls = 0;
+  options.progress = [&](const SolveProgress& /*progress*/) { return ++num_calls < 2; };
+  EXPECT_EQ(solve(problem, options).status, SolveStatus::kCancelled);
+  EXPECT_EQ(num_calls, 2);
+}
+
+TEST(Solve, RefusesContradictoryInput) {
+  const Problem good = exactProblem(sceneOf({"ds-none"}, 3));
+  const auto rejects = [&good](const auto& damage) {
+    Problem bad = good;
+    damage(bad);
+    EXPECT_THROW(solve(bad, {}), Error);
+  };
+  rejects([](Problem& bad) { bad.T_rig_target.pop_back(); });
+  rejects([](Problem& bad) { bad.views[0].cameras[0].camera_index = 1; });
+  rejects([](Problem& bad) { bad.views[0].cameras[0].corners[0].corner_id = 144; });
+  rejects([](Problem& bad) { bad.views[0].cameras[0].corners[0].px.x() = std::nan(""); });
+  rejects([](Problem& bad) { bad.views[0].cameras[0].corners[0].cov_px2.setZero(); });
+  rejects([](Problem& bad) {
+    for (observation::View& view : bad.views) {
+      view.cameras.clear();
+    }
+  });
 }
 
 }  // namespace

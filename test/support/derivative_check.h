@@ -8,17 +8,30 @@
 
 namespace tartan_calib::test_support {
 
-/// The gradient of a problem's total cost as its blocks state it: shared unknowns, then block by block.
-inline Eigen::VectorXd statedGradient(const solver::BlockProblem& problem) {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(problem.numShared() + solver::kBlockSize * problem.numBlocks());
+/// Gradient of a problem's total cost and diagonal of its normal matrix, as its blocks state them: shared unknowns, then
+/// block by block.
+struct StatedDerivatives {
+  double cost = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd diagonal;
+};
+
+inline StatedDerivatives statedDerivatives(const solver::BlockProblem& problem) {
+  const Eigen::Index size = problem.numShared() + solver::kBlockSize * problem.numBlocks();
+  StatedDerivatives stated{0.0, Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
   for (int k = 0; k < problem.numBlocks(); ++k) {
     const solver::BlockTerms terms = problem.linearize(k);
+    const Eigen::Index at = problem.numShared() + solver::kBlockSize * k;
+    stated.cost += terms.cost;
     for (std::size_t i = 0; i < terms.shared.size(); ++i) {
-      gradient(terms.shared[i]) += terms.g_s(static_cast<Eigen::Index>(i));
+      const Eigen::Index local = static_cast<Eigen::Index>(i);
+      stated.gradient(terms.shared[i]) += terms.g_s(local);
+      stated.diagonal(terms.shared[i]) += terms.H_ss(local, local);
     }
-    gradient.segment<solver::kBlockSize>(problem.numShared() + solver::kBlockSize * k) = terms.g_b;
+    stated.gradient.segment<solver::kBlockSize>(at) = terms.g_b;
+    stated.diagonal.segment<solver::kBlockSize>(at) = terms.H_bb.diagonal();
   }
-  return gradient;
+  return stated;
 }
 
 inline double costAfter(solver::BlockProblem& problem, const Eigen::VectorXd& all_unknowns) {
@@ -35,18 +48,16 @@ inline double costAfter(solver::BlockProblem& problem, const Eigen::VectorXd& al
   return cost;
 }
 
-/// Largest difference between the stated gradient and central differences of the cost, relative to the gradient's size or
-/// the cost's curvature over the step, whichever is larger per unknown.
+/// Largest difference between the stated gradient and central differences of the cost, per unknown as a share of the largest
+/// value that the gradient could have there: |J_i' r| <= |J_i| |r|.
 inline double gradientError(solver::BlockProblem& problem, double step_size) {
-  const Eigen::VectorXd stated = statedGradient(problem);
+  const StatedDerivatives stated = statedDerivatives(problem);
   double error = 0.0;
-  for (Eigen::Index i = 0; i < stated.size(); ++i) {
-    const auto cost = [&](double size) { return costAfter(problem, size * Eigen::VectorXd::Unit(stated.size(), i)); };
-    const double ahead = cost(step_size);
-    const double behind = cost(-step_size);
-    const double numeric = (ahead - behind) / (2.0 * step_size);
-    const double scale = std::max({std::abs(stated(i)), std::abs(numeric), 1e-6});
-    error = std::max(error, std::abs(stated(i) - numeric) / scale);
+  for (Eigen::Index i = 0; i < stated.gradient.size(); ++i) {
+    const Eigen::VectorXd step = step_size * Eigen::VectorXd::Unit(stated.gradient.size(), i);
+    const double numeric = (costAfter(problem, step) - costAfter(problem, -step)) / (2.0 * step_size);
+    const double largest = std::sqrt(stated.diagonal(i) * 2.0 * stated.cost);
+    error = std::max(error, std::abs(stated.gradient(i) - numeric) / largest);
   }
   return error;
 }
