@@ -166,6 +166,12 @@ TEST(ArrayText, WrapsAtNumpysWidth) {
             "[-0.12345679 -0.12345679 -0.12345679 -0.12345679 -0.12345679 -0.12345679\n -0.12345679 -0.12345679]");
 }
 
+TEST(ArrayText, ABracketMustFitIntoTheLineToo) {
+  // A line of these five would have 75 characters up to the bracket; numpy keeps to 74.
+  EXPECT_EQ(arrayText(Eigen::VectorXd::Constant(5, -1234.12345678)),
+            "[-1234.12345678 -1234.12345678 -1234.12345678 -1234.12345678\n -1234.12345678]");
+}
+
 TEST(MatrixText, IsNumpys) {
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
   T(0, 2) = -4e-8;
