@@ -15,6 +15,9 @@ constexpr double kInitialDamping = 1e-6;  ///< relative to diag(H): close to Gau
 constexpr double kMinDamping = 1e-12;     ///< keeps undetermined directions solvable
 constexpr double kNewtonDamping = 1e-9;   ///< up to here a step counts as a Gauss-Newton step
 constexpr double kMaxDamping = 1e12;
+/// Part of the cost that a failed step may have promised at the minimum. In a valley that is bent as well as nearly flat the
+/// quadratic model promises so much without end; what is left to gain moves parameters by 1e-3 of their uncertainty or so.
+constexpr double kNegligible_ratio = 1e-8;
 constexpr double kDampingDecrease = 0.1;
 constexpr double kDampingIncrease = 10.0;  ///< grows with every rejection in a row
 constexpr double kGoodGain = 0.5;          ///< actual over promised change of cost from which on damping falls
@@ -65,7 +68,7 @@ class Minimizer {
     if (damping_ <= kNewtonDamping) {
       finish(Status::kConverged);
     } else if (undamped_failed_) {
-      finish(Status::kStalled);
+      finish(failed_promise_ <= kNegligible_ratio * equations_.cost ? Status::kConverged : Status::kStalled);
     } else {
       damping_ = kNewtonDamping;
     }
@@ -77,6 +80,7 @@ class Minimizer {
     const double gain = (equations_.cost - cost) / candidate.promised;
     if (!(gain > 0.0)) {
       problem_.undo();
+      failed_promise_ = std::max(failed_promise_, candidate.promised);
       return false;
     }
     if (gain > kGoodGain) {
@@ -84,6 +88,7 @@ class Minimizer {
     }
     increase_ = kDampingIncrease;
     undamped_failed_ = false;
+    failed_promise_ = 0.0;
     linearize();
     ++summary_.iterations;
     if (options_.progress && !options_.progress(summary_.iterations, equations_.cost)) {
@@ -146,6 +151,7 @@ class Minimizer {
   double damping_ = kInitialDamping;
   double increase_ = kDampingIncrease;
   bool undamped_failed_ = false;
+  double failed_promise_ = 0.0;  ///< largest one of the steps rejected since the last success
   bool is_finished_ = false;
 };
 
