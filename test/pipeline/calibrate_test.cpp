@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "board_stream.h"
 #include "support/expect_message.h"
 #include "support/simulated_scene.h"
 
@@ -259,6 +260,23 @@ TEST(CalibrateCorners, CornersOfAnotherTargetOrOutOfOrderAreRejected) {
   std::swap(cameras[0].images[0], cameras[0].images[1]);
   expectMessage<InputError>([&] { calibrateCorners(cameras, target::AprilGrid(), optionsFor({"pinhole-radtan"})); },
                             {"cam0, image ", "increase"});
+}
+
+TEST(Calibrate, FromImagesRecoversTheLensWhateverTheNumberOfThreads) {
+  const Pinhole pinhole;
+  const CameraStream stream = streamOf(boardImages(12, pinhole));
+  CalibrateOptions options = optionsFor({"pinhole-none"});
+  const CalibrationResult one = calibrate({stream}, smallGrid(), options);
+  options.num_threads = 3;
+  const CalibrationResult three = calibrate({stream}, smallGrid(), options);
+  const Eigen::VectorXd parameters = camera::parameters(one.solution.rig.cameras[0].camera.model);
+  EXPECT_EQ(parameters, camera::parameters(three.solution.rig.cameras[0].camera.model));
+  // The pictures are good to some tenths of a pixel only.
+  EXPECT_NEAR(parameters(0), pinhole.focal_px, 0.01 * pinhole.focal_px);
+  EXPECT_NEAR(parameters(2), 319.5, 4.0);
+  EXPECT_EQ(one.cameras[0].num_images_used, 12U);
+  EXPECT_EQ(one.times.size(), 5U);
+  EXPECT_EQ(one.times[0].stage, Stage::kDetect);
 }
 
 TEST(Calibrate, ATopicWithoutReadableImagesIsAnError) {

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <memory>
 
-#include "board_image.h"
+#include "board_stream.h"
 #include "support/expect_message.h"
 #include "tartan_calib/pipeline/calibrate.h"
 
@@ -12,38 +12,6 @@ namespace tartan_calib::pipeline {
 namespace {
 
 using test_support::expectMessage;
-
-target::AprilGrid smallGrid() {
-  target::AprilGrid grid;
-  grid.tag_rows = 4;
-  grid.tag_cols = 4;
-  return grid;
-}
-
-constexpr std::int64_t kPeriod_ns = 50'000'000;
-
-/// Images of the board, 50 ms apart from stamp 50 ms on.
-std::vector<StampedImage> boardImages(int count, const Pinhole& pinhole = {}) {
-  std::vector<StampedImage> images;
-  for (int i = 0; i < count; ++i) {
-    const cv::Mat image = drawBoard(smallGrid(), pinhole, boardPose(smallGrid(), i));
-    images.push_back({(i + 1) * kPeriod_ns, [image] { return image; }});
-  }
-  return images;
-}
-
-CameraStream streamOf(const std::vector<StampedImage>& images) {
-  CameraStream stream;
-  stream.topic = "/cam0/image_raw";
-  stream.num_images = images.size();
-  stream.open = [images] {
-    auto next = std::make_shared<std::size_t>(0);
-    return [images, next]() -> std::optional<StampedImage> {
-      return *next < images.size() ? std::optional<StampedImage>(images[(*next)++]) : std::nullopt;
-    };
-  };
-  return stream;
-}
 
 CameraCorners detect(const std::vector<StampedImage>& images, int num_threads = 2, const Listener& listener = {}) {
   CalibrateOptions options;
