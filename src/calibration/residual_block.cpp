@@ -141,8 +141,10 @@ WarpedBoard::WarpedBoard(const std::vector<Eigen::Vector3d>& flat_points) : flat
     low = low.min(p.head<2>().array());
     high = high.max(p.head<2>().array());
   }
+  // A board without extent along an axis does not bend along it.
+  const Eigen::Array2d extent = (high - low).max(std::numeric_limits<double>::min());
   for (const Eigen::Vector3d& p : flat_points_) {
-    const Eigen::Array2d centred = 2.0 * (p.head<2>().array() - low) / (high - low) - 1.0;
+    const Eigen::Array2d centred = 2.0 * (p.head<2>().array() - low) / extent - 1.0;
     shapes_.emplace_back(1.0 - centred.square());
   }
 }
