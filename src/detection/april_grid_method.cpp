@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string>
 
 #include "board_completion.h"
 #include "detection_method.h"
@@ -11,6 +12,17 @@
 
 namespace tartan_calib::detection {
 namespace {
+
+target::TagFamily familyOf(const target::AprilGrid& grid) {
+  target::TagFamily family = target::tagFamily(grid.family);
+  const auto num_codes = static_cast<int>(family.codes.size());
+  if (grid.code_offset < 0 || grid.code_offset + target::numTags(grid) > num_codes) {
+    throw InputError("the aprilgrid needs tags " + std::to_string(grid.code_offset) + " to " +
+                     std::to_string(grid.code_offset + target::numTags(grid) - 1) + ", but " + grid.family + " has only " +
+                     std::to_string(num_codes) + "; check tagRows, tagCols, codeOffset and tagFamily");
+  }
+  return family;
+}
 
 /// Half of the widest window around a corner [tag sides] that holds no payload and no neighbouring corner.
 double refineHalfWindow(const target::AprilGrid& grid, const target::TagFamily& family) {
@@ -60,13 +72,16 @@ void dropDisturbed(std::vector<TagCorner>& corners) {
 class AprilGridMethod : public DetectionMethod {
  public:
   AprilGridMethod(const target::AprilGrid& grid, const DetectorOptions& options)
-      : grid_(grid), options_(options), reader_(target::tagFamily(grid.family)) {
+      : grid_(grid),
+        options_(options),
+        reader_(familyOf(grid)),
+        patterns_(reader_.family(), grid.code_offset, target::numTags(grid)) {
     refine_.half_window = refineHalfWindow(grid, reader_.family());
   }
 
   Detection detect(const cv::Mat& gray) const override {
     const std::vector<Saddle> saddles = findSaddles(gray);
-    const BoardSearch search{gray, saddles, grid_, reader_, options_.max_hamming};
+    const BoardSearch search{gray, saddles, grid_, reader_, patterns_, options_.max_hamming};
     Detection detection;
     std::vector<PlacedTag> tags;
     for (const SaddleLattice& lattice : growLattices(gray, saddles)) {
@@ -130,6 +145,7 @@ class AprilGridMethod : public DetectionMethod {
   target::AprilGrid grid_;
   DetectorOptions options_;
   TagReader reader_;
+  PayloadPatterns patterns_;
   RefineOptions refine_;
 };
 

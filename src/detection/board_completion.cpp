@@ -138,8 +138,7 @@ std::optional<PlacedTag> seekTag(const BoardSearch& search, const std::array<Eig
   }
   const auto reading = search.reader.read(search.gray, tag->map, search.grid.border_cells, search.grid.tag_spacing_ratio);
   constexpr int kTopLeft = 0;
-  const bool is_tag = reading && search.reader.hammingTo(*reading, search.grid.code_offset + tag_index, kTopLeft) <=
-                                     maxHammingWherePlaced(search.reader.family());
+  const bool is_tag = reading && agreesWithPlace(search, *reading, tag_index, kTopLeft);
   return is_tag ? tag : std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "payload_patterns.h"
 #include "tag_map.h"
 #include "tag_reader.h"
 #include "tartan_calib/detection/saddle.h"
@@ -19,6 +20,7 @@ struct BoardSearch {
   const std::vector<Saddle>& saddles;
   const target::AprilGrid& grid;
   const TagReader& reader;
+  const PayloadPatterns& patterns;
   int max_hamming;
 };
 
@@ -31,9 +33,14 @@ struct PlacedTag {
   TagMap map;
 };
 
-/// Wrong bits that a tag may have whose place on the board other tags have settled: then only one code is possible, and up
-/// to half the distance between codes it cannot be taken for another.
-inline int maxHammingWherePlaced(const target::TagFamily& family) { return (family.min_hamming_distance - 1) / 2; }
+/// True if a reading agrees with the tag that other tags say must be there. Up to half of the distance between codes it
+/// cannot be taken for another; beyond that, blurred cells must look like the tag's.
+inline bool agreesWithPlace(const BoardSearch& search, const TagReading& reading, int tag_index, int top_left) {
+  constexpr double kMinCorrelation = 0.6;
+  const int max_hamming = (search.reader.family().min_hamming_distance - 1) / 2;
+  return search.reader.hammingTo(reading, search.grid.code_offset + tag_index, top_left) <= max_hamming ||
+         search.patterns.correlation(reading.cells, tag_index, top_left) >= kMinCorrelation;
+}
 
 /// Map of a square of a lattice, its corners (0, 0), (1, 0), (1, 1), (0, 1), bent towards the nodes around it.
 /// `pixelAt(i, j)`, i and j from -1 to 2, gives the pixel of such a node or nothing.

@@ -120,6 +120,14 @@ class CellGrid {
   double& at(int row, int col) { return values_[index(row, col)]; }
   double at(int row, int col) const { return values_[index(row, col)]; }
 
+  std::vector<double> payload() const {
+    std::vector<double> cells;
+    for (int i = 0; i < size_ * size_; ++i) {
+      cells.push_back(at(i / size_, i % size_));
+    }
+    return cells;
+  }
+
   std::uint64_t threshold(double sharpening) const {
     std::uint64_t code = 0;
     for (int row = 0; row < size_; ++row) {
@@ -196,6 +204,7 @@ std::optional<TagReading> TagReader::read(const cv::Mat& gray, const TagMap& map
     }
   }
   TagReading reading;
+  reading.cells = grid.payload();
   for (const double sharpening : kSharpenings) {
     const std::uint64_t code = grid.threshold(sharpening);
     if (reading.codes.empty() || code != reading.codes.back()) {

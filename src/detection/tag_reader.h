@@ -14,6 +14,7 @@ namespace tartan_calib::detection {
 /// neighbouring cells, so there are several readings, each sharpened more than the one before.
 struct TagReading {
   std::vector<std::uint64_t> codes;
+  std::vector<double> cells;  ///< as sampled, row by row: about -1 = as dark as the border, 1 = as light as the gap
 };
 
 /// A code of the family found in a reading.

@@ -113,6 +113,19 @@ INSTANTIATE_TEST_SUITE_P(Difficulties, AprilGridUnder,
                                          Difficulty{"blurred", 1.6, 2.0, 0.03}, Difficulty{"noisy", 0.7, 8.0, 0.05}),
                          [](const auto& test) { return std::string(test.param.name); });
 
+TEST(AprilGridDetector, knowsABoardThatIsTooBlurredToDecodeItsTags) {
+  const target::AprilGrid grid;
+  target::AprilGrid other = grid;
+  other.code_offset = 100;
+  BoardScene scene(vga());
+  const auto truth = scene.add(grid, kTilted);
+  const cv::Mat image = scene.expose(2.8, 2.0);
+  const Score result = score(TargetDetector(grid).detect(image), truth);
+  EXPECT_GE(result.found, 140);
+  EXPECT_EQ(result.wrong, 0);
+  EXPECT_TRUE(TargetDetector(other).detect(image).corners.empty());
+}
+
 TEST(AprilGridDetector, doesNotMindUnevenLight) {
   const target::AprilGrid grid;
   BoardScene scene(vga());
@@ -324,6 +337,12 @@ TEST(AprilGridDetector, findsNothingWhereNothingIs) {
                                cv::Mat(cv::Mat::zeros(1, 1, CV_8UC1)), cv::Mat(0, 0, CV_8UC1)}) {
     EXPECT_TRUE(detector.detect(image).corners.empty());
   }
+}
+
+TEST(AprilGridDetector, refusesABoardWithMoreTagsThanItsFamily) {
+  target::AprilGrid grid;
+  grid.family = "t16h5";
+  EXPECT_THROW(TargetDetector{grid}, InputError);
 }
 
 TEST(AprilGridDetector, refusesOtherThanEightBits) {
