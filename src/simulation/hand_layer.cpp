@@ -17,12 +17,14 @@ struct Limb {
   Eigen::Vector3d to_m;
   double from_radius_m;
   double to_radius_m;
+  double brightness = 1.0;  ///< against skin
 };
 
 /// Measures of an adult's right hand seen from its back: x to the side of the little finger, y along the middle finger, z
 /// away from the board. From far to near, as they are painted over one another.
-const std::array<Limb, 7> kAdultHand = {{
-    {{0.0, -0.45, 0.09}, {0.0, -0.07, 0.03}, 0.045, 0.029},          // forearm
+const std::array<Limb, 8> kAdultHand = {{
+    {{0.0, -0.28, 0.06}, {0.0, -0.07, 0.03}, 0.040, 0.029},          // forearm
+    {{0.0, -0.85, 0.12}, {0.0, -0.22, 0.055}, 0.065, 0.050, 0.45},   // sleeve
     {{-0.032, -0.025, 0.02}, {-0.072, 0.035, 0.014}, 0.016, 0.010},  // thumb
     {{0.033, 0.035, 0.015}, {0.056, 0.090, 0.010}, 0.010, 0.007},    // little finger
     {{0.013, 0.045, 0.016}, {0.022, 0.116, 0.010}, 0.011, 0.008},    // ring finger
@@ -142,21 +144,23 @@ void paint(HandLayer& layer, const Outline& outline, const cv::Rect& window, dou
 
 HandLayer drawHand(const Hand& hand, const camera::Camera& camera, const geometry::Rigid3& T_cam_target) {
   const HandProjector projector(hand, camera, T_cam_target);
+  std::vector<Limb> seen;
   HandLayer layer;
   for (const Limb& limb : kAdultHand) {
-    layer.window |= projector.window(projector.outline(limb, 1.0));
-  }
-  if (layer.window.empty()) {
-    return layer;
+    const cv::Rect window = projector.window(projector.outline(limb, 1.0));
+    if (!window.empty()) {
+      seen.push_back(limb);
+      layer.window |= window;
+    }
   }
   layer.cover = cv::Mat1f(layer.window.size(), 0.0F);
   layer.light = cv::Mat1f(layer.window.size(), 0.0F);
-  for (const Limb& limb : kAdultHand) {
+  for (const Limb& limb : seen) {
     for (const Tone& tone : kSkin) {
       const Outline outline = projector.outline(limb, tone.thickness_ratio);
-      const cv::Rect window = projector.window(outline);
+      const cv::Rect window = projector.window(outline) & layer.window;
       if (!window.empty()) {
-        paint(layer, outline, window, tone.grey);
+        paint(layer, outline, window, limb.brightness * tone.grey);
       }
     }
   }

@@ -88,15 +88,16 @@ cv::Mat paintWall(cv::Size size, int index, cv::RNG& rng) {
   const double width_m = size.width / kTexelsPerMetre;
   for (double left_m = 0.3; left_m + 1.2 < width_m; left_m += rng.uniform(1.3, 1.9)) {
     const int kind = rng.uniform(0, 5);
-    if (kind <= 1) {
+    const bool is_first = left_m < 0.5;
+    if (is_first && index == 0) {
+      paintCheckerboard(wall(randomPanel(wall, {0.8, 0.7}, left_m, rng)));
+    } else if (kind <= 1) {
       paintPoster(wall(randomPanel(wall, {0.8, 1.1}, left_m, rng)), rng);
     } else if (kind == 2) {
       paintWindow(wall(randomPanel(wall, {1.1, 1.2}, left_m, rng)));
     } else if (kind == 3) {
       const cv::Rect door(texels(left_m), size.height - texels(2.05), texels(0.95), texels(2.05));
       paintDoor(wall(door));
-    } else if (index == 0) {
-      paintCheckerboard(wall(randomPanel(wall, {0.8, 0.7}, left_m, rng)));
     }
   }
   return wall;

@@ -7,12 +7,19 @@
 namespace tartan_calib::simulation {
 
 void applyPsf(cv::Mat& grey, double sigma_px) {
-  constexpr double kRadiusInSigmas = 4.0;  // cuts 6e-5 of the weight
+  constexpr double kRadiusInSigmas = 4.5;  // cuts less than 1e-5 of the weight
+  constexpr int kSpareWeights = 2;         // for the heavier tail of a narrow kernel
   if (sigma_px <= 0.0) {
     return;
   }
-  const int size = 2 * static_cast<int>(std::ceil(kRadiusInSigmas * sigma_px)) + 1;
-  cv::GaussianBlur(grey, grey, cv::Size(size, size), sigma_px, sigma_px, cv::BORDER_REPLICATE);
+  const int radius = static_cast<int>(std::ceil(kRadiusInSigmas * sigma_px)) + kSpareWeights;
+  cv::Mat1d kernel(2 * radius + 1, 1);
+  for (int i = -radius; i <= radius; ++i) {
+    const double variance_px2 = sigma_px * sigma_px;
+    kernel(i + radius, 0) = std::exp(-variance_px2) * std::cyl_bessel_i(std::abs(i), variance_px2);
+  }
+  kernel /= cv::sum(kernel)[0];
+  cv::sepFilter2D(grey, grey, -1, kernel, kernel, cv::Point(-1, -1), 0.0, cv::BORDER_REPLICATE);
 }
 
 double pixelVariance(double grey, const SensorOptions& options) {

@@ -8,13 +8,14 @@ namespace tartan_calib::simulation {
 /// What happens to light between the lens and the file. Grey levels are those of 8 bits. The noise is that of a machine
 /// vision camera whose pixels hold 10 000 electrons.
 struct SensorOptions {
-  double psf_sigma_px = 0.6;       ///< Gaussian, beside the pixel's own square
+  double psf_sigma_px = 0.6;       ///< Gaussian, beside the pixel's own square; at most 20
   double read_noise_grey = 1.0;    ///< standard deviation in the dark
   double shot_noise_grey = 0.025;  ///< variance per grey level of signal
 };
 
-/// Blurs in place, any number of channels. Each pixel is an exact area average, so a symmetric sum of shifted ones is the
-/// image under a symmetric point spread function: nothing moves.
+/// Blurs in place, any number of channels, with Lindeberg's discrete Gaussian, whose variance is sigma^2 however narrow it
+/// is. Each pixel is an exact area average, so a symmetric sum of shifted ones is the image under a symmetric point spread
+/// function: nothing moves.
 void applyPsf(cv::Mat& grey, double sigma_px);
 
 /// Variance of a pixel of the file whose light is `grey`, rounding included.

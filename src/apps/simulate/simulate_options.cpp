@@ -1,6 +1,7 @@
 #include "simulate/simulate_options.h"
 
 #include <boost/program_options.hpp>
+#include <cmath>
 #include <map>
 #include <regex>
 
@@ -131,11 +132,12 @@ void check(const SimulateOptions& options) {
   require(options.num_cameras >= 1 && options.num_cameras <= kMaxCameras, "--cameras must be from 1 to 64");
   require(options.models.size() == 1 || static_cast<int>(options.models.size()) == options.num_cameras,
           "--models needs one model for all cameras or one for each of the " + std::to_string(options.num_cameras));
-  require(options.rate_hz > 0.0, "--rate must be positive");
+  require(std::isfinite(options.baseline_m) && std::isfinite(options.yaw_deg), "--baseline and --yaw must be finite");
+  require(options.rate_hz > 0.0 && std::isfinite(options.rate_hz), "--rate must be positive");
   require(is_ratio(options.blurred_ratio), "--blurred must be from 0 to 1");
   require(is_ratio(options.hand_ratio), "--hands must be from 0 to 1");
   require(options.max_blur_px >= 0.0 && options.max_blur_px <= 100.0, "--motion-blur must be from 0 to 100 px");
-  require(options.psf_sigma_px >= 0.0 && options.psf_sigma_px <= 50.0, "--psf must be from 0 to 50 px");
+  require(options.psf_sigma_px >= 0.0 && options.psf_sigma_px <= 20.0, "--psf must be from 0 to 20 px");
   require(options.noise_grey >= 0.0 && options.noise_grey <= 255.0, "--noise must be from 0 to 255");
   require(options.num_threads >= 0, "--threads must not be negative");
 }
