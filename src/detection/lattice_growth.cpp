@@ -13,11 +13,15 @@
 namespace tartan_calib::detection {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // Edges from an outer corner that are followed up, the likeliest ones.
 constexpr std::size_t kMaxCandidates = 3;
 // A square's side is at most so many times as long as the opposite side of the square before it.
 constexpr double kMaxGrowth_ratio = 3.0;
+
+// Between a saddle and where the corners around say that it is, in units of the shorter side of a square.
+constexpr double kMaxDeviation_squares = 0.25;
+constexpr double kMinArmCosine = 0.9;  // 26 degrees, an arm's error and the map's
 
 /// The clockwise directions: next column, next row, previous column, previous row.
 constexpr std::array<LatticePlace, 4> kSteps{LatticePlace{1, 0}, LatticePlace{0, 1}, LatticePlace{-1, 0},
@@ -51,14 +55,7 @@ class LatticeGrower {
   }
 
   void grow() {
-    for (bool grown = true; grown;) {
-      grown = false;
-      const std::map<LatticePlace, Node> nodes = nodes_;
-      for (const auto& entry : nodes) {
-        for (int direction = 0; direction < 4; ++direction) {
-          grown = closeSquare(entry.first, direction) || grown;
-        }
-      }
+    while (closeSquares() || addPredicted()) {
     }
   }
 
@@ -101,6 +98,17 @@ class LatticeGrower {
     return parity;
   }
 
+  bool closeSquares() {
+    bool grown = false;
+    const std::map<LatticePlace, Node> nodes = nodes_;
+    for (const auto& entry : nodes) {
+      for (int direction = 0; direction < 4; ++direction) {
+        grown = closeSquare(entry.first, direction) || grown;
+      }
+    }
+    return grown;
+  }
+
   /// Where the edge from `place` in a direction may lead: to the node that is there, else to free saddles.
   std::vector<Candidate> ahead(const LatticePlace& place, int direction, double max_length_px) const {
     const auto there = nodes_.find(step(place, direction));
@@ -136,7 +144,7 @@ class LatticeGrower {
     if (nodes_.count(other) == 0 || (nodes_.count(near_place) > 0 && nodes_.count(far_place) > 0)) {
       return false;
     }
-    double least_px = std::numeric_limits<double>::infinity();
+    double least_px = kNoLimit;
     std::optional<std::pair<Node, Node>> best;
     const auto fars = ahead(other, direction, maxLength(other, direction));
     for (const Candidate& near : ahead(place, direction, maxLength(place, direction))) {
@@ -158,9 +166,53 @@ class LatticeGrower {
   double maxLength(const LatticePlace& place, int direction) const {
     const auto behind = nodes_.find(step(place, direction + 2));
     if (behind == nodes_.end()) {
-      return std::numeric_limits<double>::infinity();
+      return kNoLimit;
     }
     return kMaxGrowth_ratio * (saddle(behind->second.saddle_index).px - saddle(nodes_.at(place).saddle_index).px).norm();
+  }
+
+  /// Adds saddles that lie at the end of an edge where the lattice predicts them, as beyond a hidden corner, whose squares
+  /// do not close.
+  bool addPredicted() {
+    std::map<LatticePlace, Eigen::Vector2d> corners_px;
+    for (const auto& [place, node] : nodes_) {
+      corners_px[place] = saddle(node.saddle_index).px;
+    }
+    std::map<LatticePlace, Node> found;
+    for (const auto& entry : nodes_) {
+      for (int direction = 0; direction < 4; ++direction) {
+        const LatticePlace place = step(entry.first, direction);
+        const auto map = nodes_.count(place) == 0 ? fitLatticeMap(corners_px, place, false) : std::nullopt;
+        for (const Candidate& candidate : map ? ahead(entry.first, direction, kNoLimit) : std::vector<Candidate>{}) {
+          if (fits(candidate.node, *map)) {
+            found.emplace(place, candidate.node);
+          }
+        }
+      }
+    }
+    for (const auto& [place, node] : found) {
+      if (!taken_[static_cast<std::size_t>(node.saddle_index)]) {
+        add(place, node);
+      }
+    }
+    return !found.empty();
+  }
+
+  /// True if a saddle is where a map says and its arms lead where the map's axes do.
+  bool fits(const Node& node, const LatticeMap& map) const {
+    const Eigen::Vector2d deviation_px = saddle(node.saddle_index).px - map.centre_px();
+    if (deviation_px.norm() > kMaxDeviation_squares * map.minSpacing_px()) {
+      return false;
+    }
+    for (int direction = 0; direction < 4; ++direction) {
+      const LatticePlace& ahead = kSteps[static_cast<std::size_t>(direction)];
+      const Eigen::Vector2d axis_px = map.J_px_offset() * Eigen::Vector2d(ahead.first, ahead.second);
+      const double arm_rad = saddle(node.saddle_index).arm_rad[static_cast<std::size_t>(node.towards(direction).arm)];
+      if (axis_px.x() * std::cos(arm_rad) + axis_px.y() * std::sin(arm_rad) < kMinArmCosine * axis_px.norm()) {
+        return false;
+      }
+    }
+    return true;
   }
 
   const cv::Mat& gray_;

@@ -12,10 +12,11 @@ constexpr int kReach = 2;  // corners at most so many squares away take part
 // Weight of a corner falls off with distance, so that terms beyond the second order matter little.
 constexpr double kWeightSigma = 1.2;
 // Pulls second-order terms to zero where the corners do not tell them, as along an axis with two rows only.
-constexpr double kCurvatureRidge = 1e-3;
+constexpr double kCurvatureRidge = 0.1;
 constexpr double kRankRidge = 1e-9;
-// Variance of the predicted position in units of a corner's variance; more means an extrapolation from too little.
-constexpr double kMaxLeverage = 12.0;
+// Variance of the predicted position in units of a corner's variance: below 50 next to two columns, 1 / kRankRidge next to
+// one.
+constexpr double kMaxLeverage = 100.0;
 
 Monomials monomials(const Eigen::Vector2d& offset) {
   const double a = offset.x();
