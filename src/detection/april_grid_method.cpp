@@ -131,8 +131,8 @@ class AprilGridMethod : public DetectionMethod {
       return Eigen::Vector2d(tag.map(uv + offset) - tag.corners_px[k]);
     };
     RefineOptions refine = refine_;
-    refine.max_shift_px =
-        options_.max_refine_shift_px * search.saddles[static_cast<std::size_t>(tag.saddle_index[k])].scale_px;
+    refine.scale_px = search.saddles[static_cast<std::size_t>(tag.saddle_index[k])].scale_px;
+    refine.max_shift_px = options_.max_refine_shift_px * refine.scale_px;
     return refineBySymmetry(search.gray, tag.corners_px[k], map, refine);
   }
 

@@ -11,6 +11,7 @@ namespace tartan_calib::detection {
 namespace {
 
 constexpr double kSampleSpacing_px = 0.8;
+constexpr double kSmoothing = 0.5;         ///< sigma of the low-pass [scale]
 constexpr double kBorderReserve_px = 1.2;  ///< for gradients, interpolation and the first steps
 constexpr double kMaxReach = 4.0;          ///< of a sample, in largest half windows: more is no map of a board
 constexpr double kConvergedStep_px = 1e-3;
@@ -32,14 +33,14 @@ struct SampleSet {
   double reach_px = 0.0;  ///< of the farthest sample
 };
 
-/// Half of the window in board units along one board axis, at most `max_px` and at least options.min_half_window_px.
+/// Half of the window in board units along one board axis, at most `max_px` and at least the smallest allowed.
 double axisHalfWindow(const BoardToPixelOffset& map, const Eigen::Vector2d& axis, const RefineOptions& options,
                       double max_px) {
   const double length_px = 0.5 * (map(options.half_window * axis) - map(-options.half_window * axis)).norm();
   if (!(length_px > 0.0)) {
     return 0.0;
   }
-  return options.half_window * std::clamp(length_px, options.min_half_window_px, max_px) / length_px;
+  return options.half_window * std::clamp(length_px, options.scale_px * options.min_half_window_px, max_px) / length_px;
 }
 
 SampleSet makeSamples(const BoardToPixelOffset& map, const RefineOptions& options, double max_half_window_px) {
@@ -49,8 +50,9 @@ SampleSet makeSamples(const BoardToPixelOffset& map, const RefineOptions& option
       Eigen::Vector2d::UnitY() * axisHalfWindow(map, Eigen::Vector2d::UnitY(), options, max_half_window_px);
   const Eigen::Vector2d u_px = map(axis_u);
   const Eigen::Vector2d v_px = map(axis_v);
-  const int num_u = std::max(2, static_cast<int>(std::ceil(u_px.norm() / kSampleSpacing_px)));
-  const int num_v = std::max(2, static_cast<int>(std::ceil(v_px.norm() / kSampleSpacing_px)));
+  const double spacing_px = kSampleSpacing_px * options.scale_px;
+  const int num_u = std::max(2, static_cast<int>(std::ceil(u_px.norm() / spacing_px)));
+  const int num_v = std::max(2, static_cast<int>(std::ceil(v_px.norm() / spacing_px)));
   SampleSet set;
   for (int j = 0; j <= num_v; ++j) {
     for (int i = j == 0 ? 1 : -num_u; i <= num_u; ++i) {
@@ -72,8 +74,9 @@ class Patch {
     Eigen::Vector2d gradient_per_px;
   };
 
-  /// Square of half-size `reach_px` around `centre`, as far as the image goes.
-  Patch(const cv::Mat& image, const Eigen::Vector2d& centre, double reach_px) {
+  /// Square of half-size `reach_px` around `centre`, as far as the image goes; low-passed where detail is coarser than
+  /// pixels.
+  Patch(const cv::Mat& image, const Eigen::Vector2d& centre, double reach_px, double scale_px) {
     const int reach = static_cast<int>(std::ceil(reach_px)) + 2;  // one for the gradient, one for interpolation
     const cv::Rect box = cv::Rect(static_cast<int>(std::lround(centre.x())) - reach,
                                   static_cast<int>(std::lround(centre.y())) - reach, 2 * reach + 1, 2 * reach + 1) &
@@ -81,6 +84,9 @@ class Patch {
     origin_ = Eigen::Vector2d(box.x, box.y);
     cv::Mat1f gray;
     image(box).convertTo(gray, CV_32F);
+    if (scale_px > 1.0) {
+      cv::GaussianBlur(gray, gray, {}, kSmoothing * scale_px);
+    }
     values_.create(box.size());
     for (int y = 1; y + 1 < gray.rows; ++y) {
       for (int x = 1; x + 1 < gray.cols; ++x) {
@@ -185,14 +191,16 @@ std::optional<RefinedCorner> refineBySymmetry(const cv::Mat& gray, const Eigen::
   const double to_border_px =
       std::min(start_px.minCoeff(), std::min(gray.cols - 1 - start_px.x(), gray.rows - 1 - start_px.y()));
   const double max_reach_px = to_border_px - kBorderReserve_px;
-  SampleSet samples = makeSamples(map, options, options.max_half_window_px);
+  const double max_half_window_px = options.scale_px * options.max_half_window_px;
+  SampleSet samples = makeSamples(map, options, max_half_window_px);
   if (samples.reach_px > max_reach_px) {
-    samples = makeSamples(map, options, std::max(options.min_half_window_px, max_reach_px / std::sqrt(2.0)));
+    samples =
+        makeSamples(map, options, std::max(options.scale_px * options.min_half_window_px, max_reach_px / std::sqrt(2.0)));
   }
-  if (!(samples.reach_px <= std::min(max_reach_px, kMaxReach * options.max_half_window_px))) {
+  if (!(samples.reach_px <= std::min(max_reach_px, kMaxReach * max_half_window_px))) {
     return std::nullopt;
   }
-  const Patch patch(gray, start_px, samples.reach_px + options.max_shift_px);
+  const Patch patch(gray, start_px, samples.reach_px + options.max_shift_px, options.scale_px);
   Eigen::Vector2d centre = start_px;
   NormalEquations normal;
   double step_px = std::numeric_limits<double>::max();

@@ -12,7 +12,9 @@ namespace tartan_calib::detection {
 using BoardToPixelOffset = std::function<Eigen::Vector2d(const Eigen::Vector2d& board_offset)>;
 
 struct RefineOptions {
-  double half_window = 0.15;        ///< on the board, in the map's unit: only the corner itself may be inside
+  double half_window = 0.15;  ///< on the board, in the map's unit: only the corner itself may be inside
+  double scale_px =
+      1.0;  ///< finest detail of the image, as Saddle::scale_px: bounds below and spacing of samples grow with it
   double min_half_window_px = 1.8;  ///< the window grows to this
   double max_half_window_px = 8.0;  ///< and shrinks to this
   double max_shift_px = 1.5;        ///< from the start
