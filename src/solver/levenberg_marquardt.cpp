@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "normal_equations.h"
 #include "schur.h"
+#include "solver_choice.h"
 #include "sparse.h"
 
 namespace tartan_calib::solver {
@@ -34,6 +36,7 @@ class Minimizer {
 
   Summary run() {
     linearize();
+    use_sparse_ = useSparse();
     summary_.initial_cost = equations_.cost;
     while (!is_finished_) {
       iterate();
@@ -109,11 +112,14 @@ class Minimizer {
   }
 
   std::optional<Step> solve(const Prescribed& prescribed) const {
-    return useSparse() ? solveSparse(equations_, damping_, prescribed)
+    return use_sparse_ ? solveSparse(equations_, damping_, prescribed)
                        : solveSchur(equations_, damping_, prescribed, options_.num_threads);
   }
 
-  bool useSparse() const { return options_.linear_solver == LinearSolver::kSparse; }
+  bool useSparse() const {
+    return options_.linear_solver == LinearSolver::kSparse ||
+           (options_.linear_solver == LinearSolver::kAuto && isSparseFaster(equations_));
+  }
 
   /// The damped step within the limits: unknowns that would pass a limit are sent to it, and the others solved for anew.
   std::optional<Candidate> propose() const {
@@ -150,6 +156,7 @@ class Minimizer {
   Summary summary_;
   double damping_ = kInitialDamping;
   double increase_ = kDampingIncrease;
+  bool use_sparse_ = false;
   bool undamped_failed_ = false;
   double failed_promise_ = 0.0;  ///< largest one of the steps rejected since the last success
   bool is_finished_ = false;
