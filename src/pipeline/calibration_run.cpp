@@ -76,9 +76,6 @@ std::vector<CameraView> CalibrationRun::usableImages(const CameraCorners& corner
     }
     usable.push_back(image);
     usable.back().camera_index = camera_index;
-    for (Corner& corner : usable.back().corners) {
-      corner.used = true;
-    }
   }
   if (usable.empty()) {
     throw CalibrationError(noUsableImages(corners, target_, min_tags));
