@@ -45,6 +45,20 @@ void dropDuplicates(std::vector<PlacedTag>& tags, DetectionCounts& counts) {
   tags = std::move(single);
 }
 
+/// Scale at which most corners of the board are seen best: the blur of the image. A corner that is coarser on its own is
+/// covered in part.
+double medianScale(const std::vector<Saddle>& saddles, const std::vector<PlacedTag>& tags) {
+  std::vector<double> scales_px = {1.0};
+  for (const PlacedTag& tag : tags) {
+    for (const int i : tag.saddle_index) {
+      scales_px.push_back(i < 0 ? 1.0 : saddles[static_cast<std::size_t>(i)].scale_px);
+    }
+  }
+  const auto middle = scales_px.begin() + static_cast<std::ptrdiff_t>(scales_px.size() / 2);
+  std::nth_element(scales_px.begin(), middle, scales_px.end());
+  return *middle;
+}
+
 struct TagCorner {
   int id;
   RefinedCorner refined;
@@ -91,8 +105,9 @@ class AprilGridMethod : public DetectionMethod {
     dropDuplicates(tags, detection.counts);
     completeBoard(search, tags);
     std::vector<TagCorner> corners;
+    const double scale_px = medianScale(saddles, tags);
     for (const PlacedTag& tag : tags) {
-      const auto refined = refineTag(search, tag);
+      const auto refined = refineTag(search, tag, scale_px);
       corners.insert(corners.end(), refined.begin(), refined.end());
       detection.counts.tags += refined.empty() ? 0 : 1;
     }
@@ -107,11 +122,11 @@ class AprilGridMethod : public DetectionMethod {
 
  private:
   /// The corners of a tag that could be refined; none where the tag is too close to the image's border.
-  std::vector<TagCorner> refineTag(const BoardSearch& search, const PlacedTag& tag) const {
+  std::vector<TagCorner> refineTag(const BoardSearch& search, const PlacedTag& tag, double scale_px) const {
     const std::vector<int> corner_ids = target::tagCornerIds(grid_, tag.tag_index);
     std::vector<TagCorner> corners;
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto refined = refineCorner(search, tag, k);
+      const auto refined = refineCorner(search, tag, k, scale_px);
       if (!isClearOfBorder(search.gray, refined ? refined->px : tag.corners_px[k])) {
         return {};
       }
@@ -122,7 +137,8 @@ class AprilGridMethod : public DetectionMethod {
     return corners;
   }
 
-  std::optional<RefinedCorner> refineCorner(const BoardSearch& search, const PlacedTag& tag, std::size_t k) const {
+  std::optional<RefinedCorner> refineCorner(const BoardSearch& search, const PlacedTag& tag, std::size_t k,
+                                            double scale_px) const {
     if (tag.saddle_index[k] < 0) {
       return std::nullopt;
     }
@@ -131,8 +147,9 @@ class AprilGridMethod : public DetectionMethod {
       return Eigen::Vector2d(tag.map(uv + offset) - tag.corners_px[k]);
     };
     RefineOptions refine = refine_;
-    refine.scale_px = search.saddles[static_cast<std::size_t>(tag.saddle_index[k])].scale_px;
-    refine.max_shift_px = options_.max_refine_shift_px * refine.scale_px;
+    refine.scale_px = scale_px;
+    refine.max_shift_px =
+        options_.max_refine_shift_px * search.saddles[static_cast<std::size_t>(tag.saddle_index[k])].scale_px;
     return refineBySymmetry(search.gray, tag.corners_px[k], map, refine);
   }
 

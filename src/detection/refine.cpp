@@ -43,13 +43,19 @@ double axisHalfWindow(const BoardToPixelOffset& map, const Eigen::Vector2d& axis
   return options.half_window * std::clamp(length_px, options.scale_px * options.min_half_window_px, max_px) / length_px;
 }
 
-SampleSet makeSamples(const BoardToPixelOffset& map, const RefineOptions& options, double max_half_window_px) {
+/// Nothing where the map does not spread the window over a part of the image.
+std::optional<SampleSet> makeSamples(const BoardToPixelOffset& map, const RefineOptions& options,
+                                     double max_half_window_px) {
   const Eigen::Vector2d axis_u =
       Eigen::Vector2d::UnitX() * axisHalfWindow(map, Eigen::Vector2d::UnitX(), options, max_half_window_px);
   const Eigen::Vector2d axis_v =
       Eigen::Vector2d::UnitY() * axisHalfWindow(map, Eigen::Vector2d::UnitY(), options, max_half_window_px);
   const Eigen::Vector2d u_px = map(axis_u);
   const Eigen::Vector2d v_px = map(axis_v);
+  const double max_length_px = kMaxReach * max_half_window_px;
+  if (!(u_px.norm() > 0.0 && v_px.norm() > 0.0 && u_px.norm() < max_length_px && v_px.norm() < max_length_px)) {
+    return std::nullopt;
+  }
   const double spacing_px = kSampleSpacing_px * options.scale_px;
   const int num_u = std::max(2, static_cast<int>(std::ceil(u_px.norm() / spacing_px)));
   const int num_v = std::max(2, static_cast<int>(std::ceil(v_px.norm() / spacing_px)));
@@ -192,14 +198,15 @@ std::optional<RefinedCorner> refineBySymmetry(const cv::Mat& gray, const Eigen::
       std::min(start_px.minCoeff(), std::min(gray.cols - 1 - start_px.x(), gray.rows - 1 - start_px.y()));
   const double max_reach_px = to_border_px - kBorderReserve_px;
   const double max_half_window_px = options.scale_px * options.max_half_window_px;
-  SampleSet samples = makeSamples(map, options, max_half_window_px);
-  if (samples.reach_px > max_reach_px) {
-    samples =
+  auto window = makeSamples(map, options, max_half_window_px);
+  if (window && window->reach_px > max_reach_px) {
+    window =
         makeSamples(map, options, std::max(options.scale_px * options.min_half_window_px, max_reach_px / std::sqrt(2.0)));
   }
-  if (!(samples.reach_px <= std::min(max_reach_px, kMaxReach * max_half_window_px))) {
+  if (!window || !(window->reach_px <= std::min(max_reach_px, kMaxReach * max_half_window_px))) {
     return std::nullopt;
   }
+  const SampleSet& samples = *window;
   const Patch patch(gray, start_px, samples.reach_px + options.max_shift_px, options.scale_px);
   Eigen::Vector2d centre = start_px;
   NormalEquations normal;

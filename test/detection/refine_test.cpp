@@ -1,0 +1,171 @@
+#include "tartan_calib/detection/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "support/board_scene.h"
+#include "tartan_calib/camera/camera.h"
+
+namespace tartan_calib::detection {
+namespace {
+
+using simulation::TrueCorner;
+using test_support::BoardPose;
+using test_support::BoardScene;
+using test_support::kDegree;
+
+const target::AprilGrid kGrid;
+constexpr double kHalfWindow_m = 0.15 * 0.088;
+
+/// A board in a picture with the exact map from the board to pixels.
+struct Scene {
+  Scene(const camera::Camera& camera_in, const BoardPose& pose)
+      : camera(camera_in),
+        T_cam_target(test_support::poseOf(kGrid, pose)),
+        picture(camera_in),
+        corners(picture.add(kGrid, pose)) {}
+
+  BoardToPixelOffset mapAround(int corner_id) const {
+    const Eigen::Vector3d corner = target::cornerPoints(kGrid).at(static_cast<std::size_t>(corner_id));
+    const Eigen::Vector2d corner_px = *camera::project(camera.model, T_cam_target * corner);
+    return [this, corner, corner_px](const Eigen::Vector2d& offset) {
+      const Eigen::Vector3d point = corner + Eigen::Vector3d(offset.x(), offset.y(), 0.0);
+      return Eigen::Vector2d(*camera::project(camera.model, T_cam_target * point) - corner_px);
+    };
+  }
+
+  camera::Camera camera;
+  geometry::Rigid3 T_cam_target;
+  BoardScene picture;
+  std::vector<TrueCorner> corners;
+};
+
+Scene plain() {
+  return {test_support::pinholeCamera(640, 480, 500.0), {1.1, 3.0 * kDegree, 1.0, 20.0 * kDegree, -25.0 * kDegree, 0.5}};
+}
+
+RefineOptions options() {
+  RefineOptions result;
+  result.half_window = kHalfWindow_m;
+  return result;
+}
+
+/// Error of every corner that is refined from `start_offset_px` beside the truth.
+std::vector<double> errors(const Scene& scene, const cv::Mat& image, const Eigen::Vector2d& start_offset_px) {
+  std::vector<double> result;
+  for (const TrueCorner& corner : scene.corners) {
+    const auto refined = refineBySymmetry(image, corner.px + start_offset_px, scene.mapAround(corner.corner_id), options());
+    if (refined) {
+      result.push_back((refined->px - corner.px).norm());
+    }
+  }
+  return result;
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) {
+    sum += value * value;
+  }
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+TEST(RefineBySymmetry, recoversCornersFromStartsAllAround) {
+  const Scene scene = plain();
+  const cv::Mat image = scene.picture.expose(0.7, 1.0);
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector2d start = 0.7 * Eigen::Vector2d(std::cos(k * 45.0 * kDegree), std::sin(k * 45.0 * kDegree));
+    const auto found = errors(scene, image, start);
+    EXPECT_GE(found.size(), 140U);
+    EXPECT_LT(rms(found), 0.02);
+  }
+}
+
+TEST(RefineBySymmetry, endsAtTheSamePointWhereverItStarts) {
+  const Scene scene = plain();
+  const cv::Mat image = scene.picture.expose(0.7, 3.0);
+  const TrueCorner& corner = scene.corners.at(60);
+  const auto one = refineBySymmetry(image, corner.px + Eigen::Vector2d(0.5, 0.2), scene.mapAround(60), options());
+  const auto other = refineBySymmetry(image, corner.px - Eigen::Vector2d(0.3, 0.4), scene.mapAround(60), options());
+  ASSERT_TRUE(one && other);
+  EXPECT_LT((one->px - other->px).norm(), 0.005);
+}
+
+TEST(RefineBySymmetry, isNotBiasedByBentLines) {
+  const Scene scene(test_support::fisheyeCamera(700, 700, 210.0),
+                    {0.30, 60.0 * kDegree, 0.6, 5.0 * kDegree, 10.0 * kDegree, 0.2});
+  EXPECT_LT(rms(errors(scene, scene.picture.expose(0.7, 0.5), {0.2, -0.1})), 0.015);
+}
+
+TEST(RefineBySymmetry, isNotPulledByASlopeOfLight) {
+  Scene scene = plain();
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      scene.picture.grey()(y, x) *= static_cast<float>(1.0 + 0.01 * (x % 40 - 20));  // 1 % a pixel, 40 pixels at a time
+    }
+  }
+  const cv::Mat image = scene.picture.expose(0.7, 0.5);
+  std::vector<double> found;
+  for (const TrueCorner& corner : scene.corners) {
+    const int phase = static_cast<int>(corner.px.x()) % 40;
+    if (phase < 11 || phase > 28) {
+      continue;  // the light jumps within the window
+    }
+    const auto refined = refineBySymmetry(image, corner.px, scene.mapAround(corner.corner_id), options());
+    ASSERT_TRUE(refined);
+    found.push_back((refined->px - corner.px).norm());
+  }
+  ASSERT_GT(found.size(), 30U);
+  EXPECT_LT(rms(found), 0.02);
+}
+
+TEST(RefineBySymmetry, statesMoreUncertaintyWhereThereIsMoreNoise) {
+  const Scene scene = plain();
+  double sigma_px[2] = {};
+  for (const int i : {0, 1}) {
+    const auto refined = refineBySymmetry(scene.picture.expose(0.8, i == 0 ? 4.0 : 12.0), scene.corners.at(70).px,
+                                          scene.mapAround(70), options());
+    ASSERT_TRUE(refined);
+    sigma_px[i] = std::sqrt(0.5 * refined->cov_px2.trace());
+    EXPECT_GT(refined->cov_px2.determinant(), 0.0);
+  }
+  EXPECT_GT(sigma_px[1], 1.7 * sigma_px[0]);
+}
+
+TEST(RefineBySymmetry, givesNothingWhereNoCornerIs) {
+  const Scene scene = plain();
+  const cv::Mat image = scene.picture.expose(0.7, 1.0);
+  const BoardToPixelOffset square = [](const Eigen::Vector2d& offset) { return Eigen::Vector2d(500.0 * offset); };
+  const BoardToPixelOffset broken = [](const Eigen::Vector2d&) {
+    return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()).eval();
+  };
+  const BoardToPixelOffset huge = [](const Eigen::Vector2d& offset) { return Eigen::Vector2d(1e9 * offset.array() + 1e9); };
+  const BoardToPixelOffset point = [](const Eigen::Vector2d&) { return Eigen::Vector2d::Zero().eval(); };
+  const Eigen::Vector2d corner_px = scene.corners.at(60).px;
+  EXPECT_FALSE(refineBySymmetry(cv::Mat(200, 200, CV_8UC1, cv::Scalar(90)), {100.0, 100.0}, square, options()));
+  EXPECT_FALSE(refineBySymmetry(image, {1.0, 100.0}, square, options()));
+  EXPECT_FALSE(refineBySymmetry(image, {639.0, 479.0}, square, options()));
+  EXPECT_FALSE(refineBySymmetry(image, {-50.0, 9999.0}, square, options()));
+  EXPECT_FALSE(refineBySymmetry(image, corner_px, broken, options()));
+  EXPECT_FALSE(refineBySymmetry(image, corner_px, huge, options()));
+  EXPECT_FALSE(refineBySymmetry(image, corner_px, point, options()));
+  cv::Mat wedge(100, 100, CV_8UC1, cv::Scalar(200));
+  cv::rectangle(wedge, {50, 50}, {99, 99}, cv::Scalar(20), cv::FILLED);
+  EXPECT_FALSE(refineBySymmetry(wedge, {49.5, 49.5}, square, options()));
+}
+
+TEST(RefineBySymmetry, givesNothingFurtherAwayThanAllowed) {
+  const Scene scene = plain();
+  const cv::Mat image = scene.picture.expose(0.7, 1.0);
+  RefineOptions narrow = options();
+  narrow.max_shift_px = 0.3;
+  const Eigen::Vector2d start_px = scene.corners.at(60).px + Eigen::Vector2d(0.5, 0.0);
+  EXPECT_FALSE(refineBySymmetry(image, start_px, scene.mapAround(60), narrow));
+}
+
+}  // namespace
+}  // namespace tartan_calib::detection
