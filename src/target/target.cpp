@@ -1,5 +1,9 @@
 #include "tartan_calib/target/target.h"
 
+#include <algorithm>
+
+#include "tartan_calib/target/tag_family.h"
+
 namespace tartan_calib::target {
 namespace {
 
@@ -48,6 +52,27 @@ std::vector<Eigen::Vector3d> cornerPoints(const Target& target) {
     }
   }
   return points;
+}
+
+double symmetricHalfWidth(const Target& target) {
+  if (const auto* board = std::get_if<Checkerboard>(&target)) {
+    constexpr double kPlainShare = 0.25;
+    return kPlainShare * std::min(board->row_spacing_m, board->col_spacing_m);
+  }
+  if (const auto* grid = std::get_if<AprilGrid>(&target)) {
+    const int tag_cells = tagFamily(grid->family).payload_cells + 2 * grid->border_cells;
+    return grid->tag_size_m * std::min(static_cast<double>(grid->border_cells) / tag_cells, grid->tag_spacing_ratio);
+  }
+  return 0.0;
+}
+
+int darkDiagonal(const Target& target, int corner_id) {
+  if (!std::holds_alternative<AprilGrid>(target)) {
+    return 0;
+  }
+  // The tag lies towards +x +y of its bottom-left corner, towards -x +y of its bottom-right one, and so on.
+  const int cols = cornerLattice(target).cols;
+  return (corner_id / cols + corner_id % cols) % 2 == 0 ? 1 : -1;
 }
 
 std::vector<int> tagCornerIds(const AprilGrid& grid, int tag_index) {

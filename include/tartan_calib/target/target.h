@@ -52,6 +52,15 @@ int numCorners(const Target& target);
 /// z towards the viewer.
 std::vector<Eigen::Vector3d> cornerPoints(const Target& target);
 
+/// Half the width [m] of the square around every corner in which the board looks the same after half a turn about the
+/// corner: an AprilGrid's black border and corner squares; a quarter of a checkerboard's fields, which may carry marks
+/// farther in. 0 for circle grids, which have no X-corners.
+double symmetricHalfWidth(const Target& target);
+
+/// Which diagonal quadrants around a corner are dark: +1 those where x and y have the same sign, -1 the others, 0 where the
+/// target does not say (a checkerboard may be printed either way).
+int darkDiagonal(const Target& target, int corner_id);
+
 /// Number of tags of an AprilGrid.
 inline int numTags(const AprilGrid& grid) { return grid.tag_rows * grid.tag_cols; }
 

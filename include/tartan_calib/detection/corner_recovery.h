@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "tartan_calib/detection/board_map.h"
+#include "tartan_calib/observation/observation.h"
+#include "tartan_calib/target/tag_family.h"
+#include "tartan_calib/target/target.h"
+
+namespace tartan_calib::detection {
+
+struct RecoveryOptions {
+  double search_radius_px = 4.0;  ///< how far a corner may be from its prediction
+  double min_border_px = 2.0;     ///< corners closer to the image border are not looked for
+  double min_neighbour_px = 4.0;  ///< nor those whose nearest corner on the board is closer
+  double symmetry_window = 0.75;  ///< of the refinement, as a share of the board's symmetric half-width around a corner
+  double min_correlation = 0.8;   ///< of the grey values around a corner with the pattern expected there
+  double min_contrast = 8.0;      ///< light minus dark around a corner [grey levels]
+  double max_field_deviation_px = 1.0;  ///< of a corner's shift from its prediction against its neighbours' shifts
+};
+
+/// Finds the corners of a board whose place in the image is roughly known. No straight edges and no decoded tag are needed:
+/// around each predicted corner the image must show an X-corner of the predicted orientation and polarity; shifts from the
+/// predictions must agree between neighbours; and the payload of the tag, sampled through the map, must agree with its id,
+/// or neighbours on tags that do must vouch for the corner. A covered corner is not reported.
+class CornerRecovery {
+ public:
+  explicit CornerRecovery(const target::Target& target, const RecoveryOptions& options = {});
+
+  /// Corners by increasing id, refined by symmetry through the map, with covariances. `gray`: CV_8UC1.
+  std::vector<observation::Corner> recover(const cv::Mat& gray, const BoardMap& map) const;
+
+ private:
+  struct Candidate;
+
+  std::vector<Candidate> recoverCandidates(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
+  std::vector<Candidate> predict(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
+  void find(const cv::Mat& gray, const BoardMap& map, const Eigen::Vector2d& expected_shift_px, double radius_px,
+            Candidate& candidate) const;
+  void dropDeviating(std::vector<Candidate>& candidates) const;
+  void findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<Candidate>& candidates) const;
+  void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, std::vector<Candidate>& candidates) const;
+  double payloadCorrelation(const cv::Mat& gray, const BoardMap& map, int tag_index, const Eigen::Vector2d& shift_px) const;
+
+  target::Target target_;
+  RecoveryOptions options_;
+  std::vector<Eigen::Vector3d> corner_points_;
+  target::Lattice lattice_;
+  target::TagFamily family_;  ///< empty unless the target is an AprilGrid
+  double half_window_m_ = 0.0;
+};
+
+}  // namespace tartan_calib::detection

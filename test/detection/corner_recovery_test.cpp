@@ -1,0 +1,162 @@
+#include "tartan_calib/detection/corner_recovery.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <opencv2/imgproc.hpp>
+
+#include "support/board_scene.h"
+
+namespace tartan_calib::detection {
+namespace {
+
+using test_support::BoardPose;
+using test_support::BoardScene;
+using test_support::kDegree;
+
+BoardMap boardMap(const camera::Camera& camera, const geometry::Rigid3& T_cam_target) {
+  return [camera, T_cam_target](const Eigen::Vector2d& p_m) {
+    return camera::project(camera.model, T_cam_target * Eigen::Vector3d(p_m.x(), p_m.y(), 0.0));
+  };
+}
+
+/// How recovered corners compare with the truth.
+struct Score {
+  int expected = 0;  ///< inside the image by the border and at least 4 px from the next corner
+  int found = 0;     ///< of those, within 0.5 px
+  int wrong = 0;     ///< reported and further away
+  double median_px = 0.0;
+};
+
+Score score(const std::vector<observation::Corner>& corners, const std::vector<simulation::TrueCorner>& truth) {
+  std::map<int, Eigen::Vector2d> true_px;
+  Score result;
+  for (const simulation::TrueCorner& corner : truth) {
+    true_px[corner.corner_id] = corner.px;
+    result.expected += corner.visible && corner.neighbour_distance_px >= 4.0 ? 1 : 0;
+  }
+  std::vector<double> errors_px;
+  for (const observation::Corner& corner : corners) {
+    const auto match = true_px.find(corner.corner_id);
+    const double error_px = match == true_px.end() ? 1e9 : (match->second - corner.px).norm();
+    ++(error_px < 0.5 ? result.found : result.wrong);
+    errors_px.push_back(error_px);
+  }
+  if (!errors_px.empty()) {
+    const auto middle = errors_px.begin() + static_cast<std::ptrdiff_t>(errors_px.size() / 2);
+    std::nth_element(errors_px.begin(), middle, errors_px.end());
+    result.median_px = *middle;
+  }
+  return result;
+}
+
+/// A 200-degree fisheye with the board far from the axis: its image reaches the rim.
+const BoardPose kAtTheRim{0.55, 75.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree};
+
+camera::Camera fisheye() { return test_support::fisheyeCamera(1000, 1000, 280.0); }
+
+TEST(CornerRecoveryTest, FindsTheCornersThatAPosedModelPredicts) {
+  const target::AprilGrid grid;
+  BoardScene scene(fisheye());
+  const auto truth = scene.add(grid, kAtTheRim);
+  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  const Score result = score(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map), truth);
+  EXPECT_GE(result.found, 0.98 * result.expected) << "of " << result.expected;
+  EXPECT_GT(result.expected, 100);
+  EXPECT_EQ(result.wrong, 0);
+  EXPECT_LT(result.median_px, 0.04);
+}
+
+TEST(CornerRecoveryTest, ToleratesPredictionsThatAreSeveralPixelsOff) {
+  const target::AprilGrid grid;
+  BoardScene scene(fisheye());
+  const auto truth = scene.add(grid, kAtTheRim);
+  const BoardMap exact = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  // An error that grows over the image, as that of a model that extrapolates.
+  const BoardMap map = [&exact](const Eigen::Vector2d& p_m) -> std::optional<Eigen::Vector2d> {
+    const auto px = exact(p_m);
+    return px ? std::optional<Eigen::Vector2d>(*px + Eigen::Vector2d(1.5 + 2.0 * p_m.x(), -1.0 - 2.5 * p_m.y())) : px;
+  };
+  const Score result = score(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map), truth);
+  EXPECT_GE(result.found, 0.95 * result.expected) << "of " << result.expected;
+  EXPECT_EQ(result.wrong, 0);
+}
+
+TEST(CornerRecoveryTest, ReportsNoCoveredCorner) {
+  const target::AprilGrid grid;
+  BoardScene scene(fisheye());
+  const auto truth = scene.add(grid, {0.5, 30.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree});
+  const BoardMap map =
+      boardMap(scene.camera(),
+               test_support::poseOf(grid, {0.5, 30.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree}));
+  const Eigen::Vector2d middle_px = truth[truth.size() / 2].px;
+  constexpr int kRadius_px = 60;
+  cv::circle(scene.grey(), cv::Point(static_cast<int>(middle_px.x()), static_cast<int>(middle_px.y())), kRadius_px, 150.0F,
+             cv::FILLED);
+  std::vector<observation::Corner> corners = CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map);
+  int covered = 0;
+  for (const observation::Corner& corner : corners) {
+    covered += (corner.px - middle_px).norm() < kRadius_px ? 1 : 0;
+  }
+  EXPECT_EQ(covered, 0);
+  const Score result = score(corners, truth);
+  EXPECT_EQ(result.wrong, 0);
+  int clear = 0;
+  for (const simulation::TrueCorner& corner : truth) {
+    const bool is_clear = (corner.px - middle_px).norm() > kRadius_px + 6.0;
+    clear += is_clear && corner.visible && corner.neighbour_distance_px >= 4.0 ? 1 : 0;
+  }
+  EXPECT_GE(result.found, 0.97 * clear) << "of " << clear;
+}
+
+TEST(CornerRecoveryTest, ABoardElsewhereGivesNothing) {
+  const target::AprilGrid grid;
+  BoardScene scene(fisheye());
+  scene.add(grid, kAtTheRim);
+  BoardPose other = kAtTheRim;
+  other.azimuth_rad += 90.0 * kDegree;
+  EXPECT_TRUE(CornerRecovery(grid)
+                  .recover(scene.expose(0.7, 2.0), boardMap(scene.camera(), test_support::poseOf(grid, other)))
+                  .empty());
+  other = kAtTheRim;
+  other.roll_rad += 90.0 * kDegree;  // the same place, turned: every X-corner is there, with another id
+  EXPECT_TRUE(CornerRecovery(grid)
+                  .recover(scene.expose(0.7, 2.0), boardMap(scene.camera(), test_support::poseOf(grid, other)))
+                  .empty());
+}
+
+TEST(CornerRecoveryTest, AnotherBoardAtThePredictedPlaceGivesNothing) {
+  target::AprilGrid other;
+  other.code_offset = 40;
+  BoardScene scene(fisheye());
+  scene.add(other, kAtTheRim);
+  const target::AprilGrid grid;
+  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  EXPECT_TRUE(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map).empty());
+}
+
+TEST(CornerRecoveryTest, CheckerboardsAreFoundWhicheverWayRoundTheyArePrinted) {
+  const target::Checkerboard board{7, 10, 0.05, 0.05};
+  BoardScene scene(fisheye());
+  const BoardPose pose{0.4, 50.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree};
+  const auto truth = scene.add(board, pose);
+  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(board, pose));
+  cv::Mat image = scene.expose(0.7, 2.0);
+  for (const bool inverted : {false, true}) {
+    const cv::Mat seen = inverted ? cv::Mat(255 - image) : image;
+    const Score result = score(CornerRecovery(board).recover(seen, map), truth);
+    EXPECT_GE(result.found, 0.98 * result.expected) << "of " << result.expected << (inverted ? " inverted" : "");
+    EXPECT_EQ(result.wrong, 0);
+  }
+}
+
+TEST(CornerRecoveryTest, AnImageWithoutABoardGivesNothing) {
+  const target::AprilGrid grid;
+  const BoardScene scene(fisheye());
+  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  EXPECT_TRUE(CornerRecovery(grid).recover(scene.expose(0.7, 3.0), map).empty());
+}
+
+}  // namespace
+}  // namespace tartan_calib::detection
