@@ -28,6 +28,8 @@ std::string stageName(Stage stage) {
       return "start rig";
     case Stage::kSolve:
       return "solve";
+    case Stage::kRecover:
+      return "recover";
     case Stage::kStatistics:
       return "statistics";
   }
@@ -48,6 +50,9 @@ CalibrationResult calibrate(const std::vector<CameraStream>& streams, const targ
     }
     run.addCamera(corners, seconds.count());
   }
+  run.solveTogether();
+  for (int round = 0; round < options.max_rounds && run.runRound(streams); ++round) {
+  }
   return run.finish();
 }
 
@@ -60,6 +65,7 @@ CalibrationResult calibrateCorners(const std::vector<CameraCorners>& cameras, co
     }
     run.addCamera(cameras[i], std::nullopt);
   }
+  run.solveTogether();
   return run.finish();
 }
 

@@ -4,8 +4,11 @@
 #include <set>
 #include <utility>
 
+#include "board_poses.h"
 #include "check_options.h"
 #include "listen.h"
+#include "recover_corners.h"
+#include "round_summary.h"
 #include "tartan_calib/calibration/initialize_camera.h"
 #include "tartan_calib/calibration/initialize_rig.h"
 #include "tartan_calib/calibration/synchronize.h"
@@ -40,7 +43,11 @@ std::string noUsableImages(const CameraCorners& corners, const target::Target& t
 
 CalibrationRun::CalibrationRun(std::size_t num_cameras, const target::Target& target, const CalibrateOptions& options,
                                const Listener& listener)
-    : target_(target), options_(options), listener_(listener), target_points_(target::cornerPoints(target)) {
+    : target_(target),
+      options_(options),
+      listener_(listener),
+      target_points_(target::cornerPoints(target)),
+      known_rig_(options.known_rig) {
   checkOptions(options, num_cameras);
   result_.target = target;
 }
@@ -116,12 +123,9 @@ calibration::Problem CalibrationRun::startRig() {
   begin(Stage::kStartRig);
   const std::vector<observation::View> views = calibration::synchronize(usable_, options_.approx_sync_ns);
   result_.graph = calibration::cameraGraph(views, static_cast<int>(started_.size()));
-  calibration::Problem problem = calibration::initializeRig(started_, target_points_, views, options_.known_rig);
+  calibration::Problem problem = calibration::initializeRig(started_, target_points_, views, known_rig_);
   result_.num_dropped_views = static_cast<int>(views.size() - problem.views.size());
   end();
-  if (listener_.rig_started) {
-    listener_.rig_started(problem);
-  }
   return problem;
 }
 
@@ -173,8 +177,48 @@ void CalibrationRun::countUsedImages() {
   }
 }
 
-CalibrationResult CalibrationRun::finish() {
+void CalibrationRun::solveTogether() {
+  const calibration::Problem problem = startRig();
+  if (listener_.rig_started) {
+    listener_.rig_started(problem);
+  }
+  solve(problem);
+}
+
+std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraStream>& streams) {
+  const calibration::Solution& solution = result_.solution;
+  const BoardPoses poses(solution, options_.approx_sync_ns);
+  const detection::CornerRecovery recovery(target_, options_.recovery);
+  const RoundStart start{solution, poses, target_points_};
+  std::vector<CameraCorners> recovered;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    begin(Stage::kRecover, static_cast<int>(i));
+    recovered.push_back(recoverCorners(streams[i], static_cast<int>(i), recovery, start, corners_[i], options_, listener_));
+    end();
+  }
+  return recovered;
+}
+
+bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
+  const std::vector<CameraCorners> recovered = recoverAll(streams);
+  RoundSummary summary = compareCorners(corners_, recovered);
+  summary.round = static_cast<int>(result_.rounds.size()) + 1;
+  corners_ = recovered;
+  known_rig_ = result_.solution.rig;
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    started_[i] = known_rig_->cameras[i].camera;
+    usable_[i] = imagesWithCorners(corners_[i]);
+  }
   solve(startRig());
+  describeSolution(*known_rig_, result_.solution, target_points_, summary);
+  result_.rounds.push_back(summary);
+  if (listener_.round_finished) {
+    listener_.round_finished(summary);
+  }
+  return !isSettled(summary);
+}
+
+CalibrationResult CalibrationRun::finish() {
   begin(Stage::kStatistics);
   const std::vector<calibration::CameraStatistics> statistics =
       calibration::residualStatistics(result_.solution, target_points_);

@@ -17,6 +17,13 @@ class CalibrationRun {
   /// Starts the next camera. `seconds`: what its detection took.
   void addCamera(const CameraCorners& corners, std::optional<double> seconds);
 
+  /// Solves all cameras together from their starts.
+  void solveTogether();
+
+  /// Goes through the images again with the solved model, and solves again. False once nothing improves any more.
+  bool runRound(const std::vector<CameraStream>& streams);
+
+  /// Statistics of the last solve, and everything else that the result tells.
   CalibrationResult finish();
 
  private:
@@ -28,6 +35,7 @@ class CalibrationRun {
   std::vector<observation::CameraView> usableImages(const CameraCorners& corners, int camera_index) const;
   calibration::Problem startRig();
   void solve(const calibration::Problem& problem);
+  std::vector<CameraCorners> recoverAll(const std::vector<CameraStream>& streams);
   void collectUnused();
   void countUsedImages();
 
@@ -39,6 +47,7 @@ class CalibrationRun {
   std::vector<CameraCorners> corners_;                        ///< by camera, all images
   std::vector<std::vector<observation::CameraView>> usable_;  ///< by camera, those that take part
   std::vector<camera::Camera> started_;
+  std::optional<calibration::Rig> known_rig_;  ///< extrinsics to start from
   CalibrationResult result_;
   Progress stage_;
   Clock::time_point stage_begin_;

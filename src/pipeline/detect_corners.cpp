@@ -1,18 +1,13 @@
 #include <algorithm>
-#include <thread>
 #include <utility>
 
-#include "listen.h"
-#include "ordered_workers.h"
+#include "stream_images.h"
 #include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::pipeline {
 namespace {
 
 using observation::CameraView;
-
-/// Images in work at a time per thread: one being worked on and one that waits, so that no thread runs dry.
-constexpr int kImagesPerThread = 2;
 
 struct ImageSize {
   int width = 0;
@@ -109,37 +104,16 @@ class Collector {
   std::vector<ImageResult> results_;
 };
 
-int numThreads(int wanted) {
-  return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
 }  // namespace
 
 CameraCorners detectCorners(const CameraStream& stream, int camera_index, const target::Target& target,
                             const CalibrateOptions& options, const Listener& listener) {
   const detection::TargetDetector detector(target, options.detector);
-  const int num_threads = numThreads(options.num_threads);
-  const auto max_pending = static_cast<std::size_t>(kImagesPerThread * num_threads);
-  const ImageSource next_image = stream.open();
   Collector collector;
-  Progress progress{Stage::kDetect, camera_index, 0, stream.num_images};
-  report(listener, progress);
-
-  OrderedWorkers<ImageResult> workers(num_threads);
-  bool has_more = true;
-  while (has_more || workers.numPending() > 0) {
-    throwIfCancelled(listener);
-    std::optional<StampedImage> image = has_more ? next_image() : std::nullopt;
-    has_more = image.has_value();
-    if (image) {
-      workers.submit([&detector, image = std::move(*image)] { return detectImage(detector, image); });
-    }
-    if (workers.numPending() >= max_pending || (!has_more && workers.numPending() > 0)) {
-      collector.add(workers.next());
-      ++progress.done;
-      report(listener, progress);
-    }
-  }
+  streamImages<ImageResult>(
+      stream, options.num_threads, listener, {Stage::kDetect, camera_index, 0, 0},
+      [&detector](const StampedImage& image) { return detectImage(detector, image); },
+      [&collector](ImageResult result) { collector.add(std::move(result)); });
   CameraCorners corners = collector.finish(camera_index);
   corners.topic = stream.topic;
   return corners;

@@ -12,6 +12,7 @@
 #include "tartan_calib/calibration/solve.h"
 #include "tartan_calib/calibration/statistics.h"
 #include "tartan_calib/camera/camera.h"
+#include "tartan_calib/detection/corner_recovery.h"
 #include "tartan_calib/detection/target_detector.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/observation/observation.h"
@@ -29,6 +30,10 @@ struct CalibrateOptions {
   std::optional<int> min_tags;                ///< AprilGrid: images with fewer stay out of the solve; default minTags()
   std::int64_t approx_sync_ns = 20'000'000;   ///< largest distance of an image's stamp from its view's
   int num_threads = 0;                        ///< of every stage (replaces solve.num_threads); 0: all cores
+  /// After the first solve the images are gone through again with the model, until fewer than 1 % of the corners are gained
+  /// and the model moves less than 0.02 px, at most so often; 0: not at all, as Kalibr.
+  int max_rounds = 5;
+  detection::RecoveryOptions recovery;
   calibration::SolveOptions solve;
 };
 
@@ -52,7 +57,7 @@ struct CameraCorners {
   detection::DetectionCounts counts;            ///< summed over the images
 };
 
-enum class Stage { kDetect, kStartCamera, kStartRig, kSolve, kStatistics };
+enum class Stage { kDetect, kStartCamera, kStartRig, kSolve, kRecover, kStatistics };
 
 /// `detect`, `start camera`, ...
 std::string stageName(Stage stage);
@@ -64,12 +69,23 @@ struct Progress {
   std::size_t total = 0;
 };
 
+/// What one pass over the images with the intermediate model changed.
+struct RoundSummary {
+  int round = 0;                 ///< from 1; round 0 is the detection
+  int corners = 0;               ///< used by the solve after the round
+  int gained = 0;                ///< seen now and not in the round before
+  int lost = 0;                  ///< the reverse
+  double rms_px = 0.0;           ///< sqrt(mean |residual|^2) of the used corners
+  double model_change_px = 0.0;  ///< rms over the image, of the camera that changed most, common rotation removed
+};
+
 /// Told what happens while it happens, always on the thread that called. Any member may stay empty.
 struct Listener {
   std::function<void(const Progress&)> progress;
   std::function<void(int camera_index, const CameraCorners&)> camera_detected;
   std::function<void(int camera_index, const camera::Camera&)> camera_started;
   std::function<void(const calibration::Problem&)> rig_started;
+  std::function<void(const RoundSummary&)> round_finished;
   std::function<void(const std::string&)> warning;  ///< the same texts are in CalibrationResult::warnings
   std::function<bool()> is_cancelled;               ///< asked once per image, stage and iteration of the solve
 };
@@ -105,6 +121,7 @@ struct CalibrationResult {
   std::vector<observation::CameraView> unused_images;
   calibration::CameraGraph graph;  ///< of all synchronised views
   int num_dropped_views = 0;       ///< synchronised views that nothing explains; their images are in unused_images
+  std::vector<RoundSummary> rounds;
   std::vector<std::string> warnings;
   std::vector<StageTime> times;  ///< in the order in which the stages ended
 };

@@ -31,7 +31,7 @@ po::options_description ownOptions() {
   po::options_description options;
   options.add_options()("init", po::value<std::string>(), "")("fix", po::value<Words>()->multitoken()->composing(), "")(
       "estimate-board-warp", "")("linear-solver", po::value<std::string>(), "")("threads", po::value<int>(), "")(
-      "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "");
+      "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "")("max-rounds", po::value<int>(), "");
   return options;
 }
 
@@ -224,6 +224,10 @@ pipeline::CalibrateOptions calibrateFrom(const Values& values) {
   solve.min_views_outlier = values.get("min-views-outlier", solve.min_views_outlier);
   if (solve.min_views_outlier < 1) {
     throw UsageError("--min-views-outlier must be a positive integer");
+  }
+  options.max_rounds = values.get("max-rounds", options.max_rounds);
+  if (options.max_rounds < 0) {
+    throw UsageError("--max-rounds must not be negative; 0 leaves the rounds out");
   }
   solve.linear_solver = linearSolver(values.get<std::string>("linear-solver", "auto"));
   applyFix(values.get<Words>("fix"), solve);

@@ -61,6 +61,7 @@ pipeline::Listener Console::listener() {
   listener.camera_detected = [this](int index, const pipeline::CameraCorners& corners) { onDetected(index, corners); };
   listener.camera_started = [this](int /*index*/, const camera::Camera& camera) { onStarted(camera); };
   listener.rig_started = [this](const calibration::Problem& problem) { onRigStarted(problem); };
+  listener.round_finished = [this](const pipeline::RoundSummary& round) { onRoundFinished(round); };
   listener.warning = [this](const std::string& text) {
     bar_.clear();
     printWarning(text);
@@ -78,6 +79,10 @@ void Console::printCameraHeader(int camera_index, std::size_t num_images) {
 }
 
 void Console::onProgress(const pipeline::Progress& progress) {
+  if (progress.stage == pipeline::Stage::kRecover) {
+    bar_.show(progress.done, progress.total);
+    return;
+  }
   if (progress.stage != pipeline::Stage::kDetect) {
     return;
   }
@@ -122,6 +127,13 @@ void Console::onRigStarted(const calibration::Problem& problem) {
                 text.projection.c_str(), i, text.distortion.c_str());
   }
   std::printf("initializing calibrator\nstarting calibration...\n");
+  std::fflush(stdout);
+}
+
+void Console::onRoundFinished(const pipeline::RoundSummary& round) {
+  bar_.clear();
+  std::printf("round %d: %d corners, %d gained, %d lost, rms %.4f px, model moved %.4f px\n", round.round, round.corners,
+              round.gained, round.lost, round.rms_px, round.model_change_px);
   std::fflush(stdout);
 }
 

@@ -26,6 +26,7 @@ class Console {
   void onDetected(int camera_index, const pipeline::CameraCorners& corners);
   void onStarted(const camera::Camera& camera);
   void onRigStarted(const calibration::Problem& problem);
+  void onRoundFinished(const pipeline::RoundSummary& round);
   void printCameraHeader(int camera_index, std::size_t num_images);
 
   const Inputs& inputs_;

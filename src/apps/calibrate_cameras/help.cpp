@@ -27,6 +27,10 @@ Start from a calibration
   --init F                  camchain to start from; --models and --topics may then be left out
   --fix WHAT                intrinsics, extrinsics or camN: keeps them as in --init; may be repeated
 
+Corners
+  --max-rounds N            go through the images again with the calibrated model and look where it says corners are, at
+                            most so often (5); 0: only the tags that are detected without a model, as Kalibr
+
 Solver
   --estimate-board-warp     also fit the curvature of the board
   --no-outliers-removal     keep all corners

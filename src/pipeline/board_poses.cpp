@@ -1,0 +1,63 @@
+#include "board_poses.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+
+namespace tartan_calib::pipeline {
+namespace {
+
+/// A hand that waves a board turns round within a second; a pose interpolated over more than this is a guess of nothing.
+constexpr std::int64_t kMaxGap_ns = 500'000'000;
+
+geometry::Rigid3 interpolate(const geometry::Rigid3& a, const geometry::Rigid3& b, double share) {
+  return {a.rotation.slerp(share, b.rotation), (1.0 - share) * a.translation + share * b.translation};
+}
+
+}  // namespace
+
+BoardPoses::BoardPoses(const calibration::Solution& solution, std::int64_t sync_ns)
+    : solution_(solution), sync_ns_(sync_ns) {
+  for (std::size_t i = 0; i < solution.views.size(); ++i) {
+    const auto& unsolved = solution.unsolved_views;
+    if (std::find(unsolved.begin(), unsolved.end(), static_cast<int>(i)) != unsolved.end()) {
+      continue;
+    }
+    view_at_[solution.views[i].stamp_ns] = i;
+    for (const observation::CameraView& image : solution.views[i].cameras) {
+      view_of_image_[{image.camera_index, image.stamp_ns}] = i;
+    }
+  }
+}
+
+geometry::Rigid3 BoardPoses::inCamera(int camera_index, const geometry::Rigid3& T_rig_target) const {
+  return solution_.rig.cameras[static_cast<std::size_t>(camera_index)].T_cam_rig * T_rig_target;
+}
+
+std::optional<geometry::Rigid3> BoardPoses::solved(int camera_index, std::int64_t stamp_ns) const {
+  const auto found = view_of_image_.find({camera_index, stamp_ns});
+  if (found == view_of_image_.end()) {
+    return std::nullopt;
+  }
+  return inCamera(camera_index, solution_.T_rig_target[found->second]);
+}
+
+std::optional<geometry::Rigid3> BoardPoses::guessed(int camera_index, std::int64_t stamp_ns) const {
+  const auto after = view_at_.lower_bound(stamp_ns);
+  const auto before = after == view_at_.begin() ? view_at_.end() : std::prev(after);
+  const auto distance_ns = [&](const auto& entry) {
+    return entry == view_at_.end() ? kMaxGap_ns : std::abs(entry->first - stamp_ns);
+  };
+  const auto nearest = distance_ns(before) < distance_ns(after) ? before : after;
+  if (distance_ns(nearest) <= sync_ns_) {
+    return inCamera(camera_index, solution_.T_rig_target[nearest->second]);
+  }
+  if (before == view_at_.end() || after == view_at_.end() || after->first - before->first > kMaxGap_ns) {
+    return std::nullopt;
+  }
+  const double share = static_cast<double>(stamp_ns - before->first) / static_cast<double>(after->first - before->first);
+  return inCamera(camera_index,
+                  interpolate(solution_.T_rig_target[before->second], solution_.T_rig_target[after->second], share));
+}
+
+}  // namespace tartan_calib::pipeline

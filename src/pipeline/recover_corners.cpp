@@ -1,0 +1,138 @@
+#include "recover_corners.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "stream_images.h"
+#include "tartan_calib/calibration/pose.h"
+
+namespace tartan_calib::pipeline {
+namespace {
+
+using observation::CameraView;
+using observation::Corner;
+
+/// A corner of an earlier round that was not found again stays while it is this close to the prediction.
+constexpr double kKeptWithin_px = 1.0;
+/// Corners needed to turn a guessed pose into an estimated one.
+constexpr std::size_t kMinPoseCorners = 8;
+
+detection::BoardMap boardMap(const camera::Camera& camera, const geometry::Rigid3& T_cam_target) {
+  return std::visit(
+      [&T_cam_target](const auto& model) -> detection::BoardMap {
+        const Eigen::Matrix3d R = T_cam_target.rotation.toRotationMatrix();
+        return [model, R, t = T_cam_target.translation](const Eigen::Vector2d& p_m) -> std::optional<Eigen::Vector2d> {
+          Eigen::Vector2d px;
+          if (!model.project(R.leftCols<2>() * p_m + t, px)) {
+            return std::nullopt;
+          }
+          return px;
+        };
+      },
+      camera.model);
+}
+
+/// Adds corners of the earlier round that the new one does not have and that still fit.
+void keepEarlier(const std::vector<Corner>& earlier, const detection::BoardMap& map,
+                 const std::vector<Eigen::Vector3d>& target_points, std::vector<Corner>& corners) {
+  const std::size_t num_found = corners.size();
+  const auto found_end = [&] { return corners.begin() + static_cast<std::ptrdiff_t>(num_found); };
+  for (const Corner& corner : earlier) {
+    const auto is_same = [&corner](const Corner& other) { return other.corner_id == corner.corner_id; };
+    if (std::any_of(corners.begin(), found_end(), is_same)) {
+      continue;
+    }
+    const auto px = map(target_points[static_cast<std::size_t>(corner.corner_id)].head<2>());
+    if (px && (*px - corner.px).norm() <= kKeptWithin_px) {
+      corners.push_back(corner);
+    }
+  }
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.corner_id < b.corner_id; });
+}
+
+/// One camera's images in one round. Const: images are worked on by several threads.
+class ImageRecovery {
+ public:
+  ImageRecovery(int camera_index, const detection::CornerRecovery& recovery, const RoundStart& start,
+                const CameraCorners& previous)
+      : camera_index_(camera_index),
+        camera_(start.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera),
+        recovery_(recovery),
+        start_(start) {
+    for (const CameraView& image : previous.images) {
+      earlier_[image.stamp_ns] = &image.corners;
+    }
+  }
+
+  CameraView recover(const StampedImage& image) const {
+    CameraView view{camera_index_, image.stamp_ns, {}};
+    const auto found = earlier_.find(image.stamp_ns);
+    const std::vector<Corner> earlier = found == earlier_.end() ? std::vector<Corner>() : *found->second;
+    auto T_cam_target = start_.poses.solved(camera_index_, image.stamp_ns);
+    const bool is_solved = T_cam_target.has_value();
+    if (!T_cam_target) {
+      T_cam_target = calibration::estimatePose(camera_, start_.target_points, earlier);
+    }
+    if (!T_cam_target) {
+      T_cam_target = start_.poses.guessed(camera_index_, image.stamp_ns);
+    }
+    if (!T_cam_target) {
+      view.corners = earlier;
+      return view;
+    }
+    try {
+      const cv::Mat gray = image.load();
+      if (gray.cols == camera_.width && gray.rows == camera_.height) {
+        view.corners = recoverFrom(gray, *T_cam_target, is_solved, earlier);
+      }
+    } catch (const InputError&) {
+      // Counted when the images were read for the first time.
+    }
+    return view;
+  }
+
+ private:
+  std::vector<Corner> recoverFrom(const cv::Mat& gray, const geometry::Rigid3& T_cam_target, bool is_solved,
+                                  const std::vector<Corner>& earlier) const {
+    detection::BoardMap map = boardMap(camera_, T_cam_target);
+    std::vector<Corner> corners = recovery_.recover(gray, map);
+    if (!is_solved && corners.size() >= kMinPoseCorners) {
+      // The pose was a guess; what was found with it gives a better one, which finds more.
+      if (const auto better = calibration::estimatePose(camera_, start_.target_points, corners)) {
+        map = boardMap(camera_, *better);
+        corners = recovery_.recover(gray, map);
+      }
+    }
+    keepEarlier(earlier, map, start_.target_points, corners);
+    return corners;
+  }
+
+  int camera_index_;
+  const camera::Camera& camera_;
+  const detection::CornerRecovery& recovery_;
+  const RoundStart& start_;
+  std::map<std::int64_t, const std::vector<Corner>*> earlier_;
+};
+
+}  // namespace
+
+CameraCorners recoverCorners(const CameraStream& stream, int camera_index, const detection::CornerRecovery& recovery,
+                             const RoundStart& start, const CameraCorners& previous, const CalibrateOptions& options,
+                             const Listener& listener) {
+  const ImageRecovery images(camera_index, recovery, start, previous);
+  CameraCorners corners = previous;
+  corners.images.clear();
+  streamImages<CameraView>(
+      stream, options.num_threads, listener, {Stage::kRecover, camera_index, 0, 0},
+      [&images](const StampedImage& image) { return images.recover(image); },
+      [&corners](CameraView view) {
+        const bool is_new = corners.images.empty() || corners.images.back().stamp_ns < view.stamp_ns;
+        if (is_new && !view.corners.empty()) {
+          corners.images.push_back(std::move(view));
+        }
+      });
+  return corners;
+}
+
+}  // namespace tartan_calib::pipeline

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "board_poses.h"
+#include "tartan_calib/detection/corner_recovery.h"
+#include "tartan_calib/pipeline/calibrate.h"
+
+namespace tartan_calib::pipeline {
+
+/// What a round knows when it goes through the images again.
+struct RoundStart {
+  const calibration::Solution& solution;
+  const BoardPoses& poses;
+  const std::vector<Eigen::Vector3d>& target_points;  ///< with the board's curvature
+};
+
+/// The corners of all images of one camera, looked for where the solution says that they are. `previous`: what the camera
+/// saw so far; its corners that are not found again are kept where they are close to the solution's predictions.
+CameraCorners recoverCorners(const CameraStream& stream, int camera_index, const detection::CornerRecovery& recovery,
+                             const RoundStart& start, const CameraCorners& previous, const CalibrateOptions& options,
+                             const Listener& listener);
+
+}  // namespace tartan_calib::pipeline
