@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 #include <string>
 
 #include "board_completion.h"
@@ -30,19 +31,20 @@ double refineHalfWindow(const target::AprilGrid& grid, const target::TagFamily& 
   return std::min(0.8 * border, 0.5 * grid.tag_spacing_ratio);
 }
 
-/// Drops every tag that was found more than once.
-void dropDuplicates(std::vector<PlacedTag>& tags, DetectionCounts& counts) {
-  std::vector<PlacedTag> single;
+/// Drops every tag that was found more than once and returns the indices of those.
+std::set<int> dropDuplicates(std::vector<PlacedTag>& tags, DetectionCounts& counts) {
+  std::set<int> seen;
+  std::set<int> duplicates;
   for (const PlacedTag& tag : tags) {
-    const auto copies =
-        std::count_if(tags.begin(), tags.end(), [&](const PlacedTag& t) { return t.tag_index == tag.tag_index; });
-    if (copies == 1) {
-      single.push_back(tag);
-    } else {
-      ++counts.duplicate_tags;
+    if (!seen.insert(tag.tag_index).second) {
+      duplicates.insert(tag.tag_index);
     }
   }
-  tags = std::move(single);
+  const auto first_dropped = std::stable_partition(
+      tags.begin(), tags.end(), [&](const PlacedTag& tag) { return duplicates.count(tag.tag_index) == 0; });
+  counts.duplicate_tags += static_cast<int>(tags.end() - first_dropped);
+  tags.erase(first_dropped, tags.end());
+  return duplicates;
 }
 
 /// Scale at which most corners of the board are seen best: the blur of the image. A corner that is coarser on its own is
@@ -102,8 +104,7 @@ class AprilGridMethod : public DetectionMethod {
       const auto found = findLatticeTags(search, lattice, detection.counts);
       tags.insert(tags.end(), found.begin(), found.end());
     }
-    dropDuplicates(tags, detection.counts);
-    completeBoard(search, tags);
+    completeBoard(search, dropDuplicates(tags, detection.counts), tags);
     std::vector<TagCorner> corners;
     const double scale_px = medianScale(saddles, tags);
     for (const PlacedTag& tag : tags) {

@@ -143,13 +143,17 @@ std::optional<PlacedTag> seekTag(const BoardSearch& search, const std::array<Eig
 }
 
 /// One round over the missing tags; true if any was found.
-bool addNeighbours(const BoardSearch& search, std::vector<PlacedTag>& tags) {
+bool addNeighbours(const BoardSearch& search, const std::set<int>& excluded, std::vector<PlacedTag>& tags) {
   std::vector<PlacedTag> added;
   const TagTable table(search.grid, tags);
   for (int row = 0; row < search.grid.tag_rows; ++row) {
     for (int col = 0; col < search.grid.tag_cols; ++col) {
-      const auto predicted_px = table.find(row, col) == nullptr ? predictCorners(search, table, row, col) : std::nullopt;
-      const auto tag = predicted_px ? seekTag(search, *predicted_px, row * search.grid.tag_cols + col) : std::nullopt;
+      const int tag_index = row * search.grid.tag_cols + col;
+      if (table.find(row, col) != nullptr || excluded.count(tag_index) != 0) {
+        continue;
+      }
+      const auto predicted_px = predictCorners(search, table, row, col);
+      const auto tag = predicted_px ? seekTag(search, *predicted_px, tag_index) : std::nullopt;
       if (tag) {
         added.push_back(*tag);
       }
@@ -161,9 +165,9 @@ bool addNeighbours(const BoardSearch& search, std::vector<PlacedTag>& tags) {
 
 }  // namespace
 
-void completeBoard(const BoardSearch& search, std::vector<PlacedTag>& tags) {
+void completeBoard(const BoardSearch& search, const std::set<int>& excluded, std::vector<PlacedTag>& tags) {
   bendMaps(search, tags);
-  while (addNeighbours(search, tags)) {
+  while (addNeighbours(search, excluded, tags)) {
     bendMaps(search, tags);
   }
 }

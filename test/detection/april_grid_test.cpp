@@ -265,6 +265,18 @@ TEST(AprilGridDetector, dropsAndCountsTheTagsOfTwoEqualBoards) {
   EXPECT_GE(detection.counts.duplicate_tags, 70);
 }
 
+TEST(AprilGridDetector, keepsOnlyTheTagsThatOneBoardAloneShows) {
+  const target::AprilGrid grid;
+  BoardScene scene(test_support::pinholeCamera(1000, 480, 450.0));
+  const auto truth = scene.add(grid, {1.1, 22.0 * kDegree, 0.0, 0.0, 10.0 * kDegree, 0.1});
+  scene.add(grid, {1.1, 46.0 * kDegree, 180.0 * kDegree, 10.0 * kDegree, 0.0, 0.5});  // in part out of the image
+  const Detection detection = TargetDetector(grid).detect(scene.expose(0.6, 2.0));
+  EXPECT_EQ(score(detection, truth).wrong, 0);
+  EXPECT_GT(detection.counts.duplicate_tags, 10);
+  EXPECT_GT(detection.counts.tags, 5);
+  EXPECT_EQ(detection.counts.duplicate_tags / 2 + detection.counts.tags, 36);
+}
+
 TEST(AprilGridDetector, isNotDisturbedByABoardWithOtherIds) {
   const target::AprilGrid grid;
   target::AprilGrid other = grid;
