@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tartan_calib::simulation {
 namespace {
@@ -9,6 +10,9 @@ namespace {
 Eigen::Vector2d pointAtX(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double x) {
   return {x, from.y() + (to.y() - from.y()) * (x - from.x()) / (to.x() - from.x())};
 }
+
+/// Safe for edges far below the window, which no row shows.
+int rowAt(double y) { return static_cast<int>(std::min<double>(y, std::numeric_limits<int>::max() - 1)); }
 
 }  // namespace
 
@@ -49,7 +53,7 @@ void CoverageBuffer::addLeftOf(double y_from, double y_to, double weight) {
   const double sign = y_to > y_from ? weight : -weight;
   const double bottom = std::min<double>(column_change_.rows, std::max(y_from, y_to));
   double y = std::max(0.0, std::min(y_from, y_to));
-  for (int row = static_cast<int>(y); y < bottom; ++row) {
+  for (int row = rowAt(y); y < bottom; ++row) {
     const double y_end = std::min(bottom, row + 1.0);
     column_change_(row, 0) += static_cast<float>(sign * (y_end - y));
     y = y_end;
@@ -72,7 +76,7 @@ void CoverageBuffer::addInsideColumns(const Eigen::Vector2d& from, const Eigen::
     return std::clamp(from.x() + slope * (y - from.y()), std::min(from.x(), to.x()), std::max(from.x(), to.x()));
   };
   double y = std::max(0.0, std::min(from.y(), to.y()));
-  for (int row = static_cast<int>(y); y < bottom; ++row) {
+  for (int row = rowAt(y); y < bottom; ++row) {
     const double y_end = std::min(bottom, row + 1.0);
     const double x = x_at(y);
     const double x_end = x_at(y_end);

@@ -127,10 +127,10 @@ Exposure ExposureMaker::expose(const Scene& scene, const BoardPattern& pattern, 
             shows_hand ? drawHand(*frame.hand, camera_.camera, pose) : HandLayer());
   }
   Exposure exposure = sum.mean();
-  exposure.light = exposure.light.mul(shading_);
+  exposure.light = exposure.light.mul(shading_, frame.exposure_ratio);
   applyPsf(exposure.light, scene.sensor.psf_sigma_px);
   if (!exposure.board_window.empty()) {
-    exposure.light_derivative = exposure.light_derivative.mul(twice(shading_(exposure.board_window)));
+    exposure.light_derivative = exposure.light_derivative.mul(twice(shading_(exposure.board_window)), frame.exposure_ratio);
     applyPsf(exposure.light_derivative, scene.sensor.psf_sigma_px);
   }
   return exposure;

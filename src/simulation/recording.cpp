@@ -235,6 +235,7 @@ Scene makeRecording(const RecordingOptions& options) {
     const auto camera_index = static_cast<std::size_t>(turn);
     const SceneCamera& lens = options.cameras[camera_index];
     SceneFrame frame;
+    frame.exposure_ratio = options.exposure_ratio;
     frame.stamp_ns = kFirstStampNs + std::llround(i * kNsPerSecond / options.rate_hz);
     frame.T_rig_target =
         lens.T_cam_rig.inverse() * paths[camera_index].T_cam_target(turn - static_cast<double>(camera_index));

@@ -200,6 +200,22 @@ TEST(Renderer, takesLightAwayTowardsTheRim) {
   EXPECT_GT(ratio(240), ratio(300));
 }
 
+TEST(Renderer, collectsLightInProportionToTheExposure) {
+  Scene scene = stillScene();
+  scene.frames.push_back(scene.frames[0]);
+  scene.frames[1].exposure_ratio = 1.7;
+  const Renderer renderer(scene);
+  const cv::Mat expected = 1.7 * renderer.renderLight(0, 0);
+  EXPECT_LT(cv::norm(renderer.renderLight(1, 0), expected, cv::NORM_INF), 1e-3);
+  scene.sensor.read_noise_grey = 2.0;
+  scene.frames[1].exposure_ratio = 40.0;
+  int num_unknown = 0;
+  for (const TrueCorner& corner : Renderer(scene).render(1).views[0].corners) {
+    num_unknown += corner.bound_px2(0, 0) > 1e3 ? 1 : 0;
+  }
+  EXPECT_GT(num_unknown, 10) << "everything saturated around these corners tells nothing of them";
+}
+
 TEST(Renderer, boundsCornersByTheInformationInTheirPixels) {
   // Fronto-parallel through a pinhole: the window around a corner is a square in the image.
   constexpr double kFocalPx = 400.0;

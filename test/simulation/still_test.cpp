@@ -134,6 +134,25 @@ TEST(ProjectCorners, areTheCamerasOwnProjections) {
   }
 }
 
+TEST(ProjectCorners, areVisibleFromTwoPixelsInsideOfEachBorder) {
+  const geometry::Rigid3 T_cam_target = pose(0.1, 0.0, 0.6);
+  const Eigen::Vector2d first = projectCorners(target::AprilGrid(), fisheye(), T_cam_target).front().px;
+  const auto first_at = [&](const Eigen::Vector2d& px) {
+    camera::Camera camera = fisheye();
+    Eigen::VectorXd parameters = camera::parameters(camera.model);
+    parameters.tail<2>() += px - first;
+    camera.model = camera::withParameters(camera.model, parameters);
+    return projectCorners(target::AprilGrid(), camera, T_cam_target).front();
+  };
+  for (const Eigen::Vector2d& px : {Eigen::Vector2d(1.9, 500.0), Eigen::Vector2d(1021.1, 500.0), Eigen::Vector2d(500.0, 1.9),
+                                    Eigen::Vector2d(500.0, 1021.1)}) {
+    const TrueCorner hidden = first_at(px);
+    EXPECT_TRUE(hidden.corner_id == 0 && !hidden.visible) << px.transpose();
+    const TrueCorner seen = first_at(px + 0.002 * (Eigen::Vector2d(500.0, 500.0) - px));
+    EXPECT_TRUE(seen.corner_id == 0 && seen.visible) << px.transpose();
+  }
+}
+
 TEST(BoardPattern, hasTagZeroUprightAtTheBottomLeftOfAnAprilGrid) {
   const target::AprilGrid grid;
   const BoardPattern pattern = boardPattern(grid, kMarginM);

@@ -14,9 +14,10 @@ struct RecordingOptions {
   std::vector<SceneCamera> cameras;
   int num_frames = 60;
   double rate_hz = 4.0;
-  double blurred_ratio = 0.0;  ///< part of the frames in which the board moves during the exposure
-  double max_blur_px = 8.0;    ///< longest mean path of the corners then
-  double hand_ratio = 0.0;     ///< part of the frames with a hand before the board
+  double blurred_ratio = 0.0;   ///< part of the frames in which the board moves during the exposure
+  double max_blur_px = 8.0;     ///< longest mean path of the corners then
+  double hand_ratio = 0.0;      ///< part of the frames with a hand before the board
+  double exposure_ratio = 1.0;  ///< 1: paper in full light is just below white; 2: it is cut off
   SensorOptions sensor;
   std::uint64_t seed = 1;
 };

@@ -35,7 +35,8 @@ struct SceneFrame {
   /// Motion of the board during the exposure: T_rig_target * exp(s * motion) for s from -1/2 to 1/2.
   geometry::Vector6d motion = geometry::Vector6d::Zero();
   std::optional<Hand> hand;
-  double heading_rad = 0.0;  ///< of the rig in the room, about the vertical
+  double exposure_ratio = 1.0;  ///< of the exposure for which Lighting tells the grey levels
+  double heading_rad = 0.0;     ///< of the rig in the room, about the vertical
 };
 
 /// Lamp and paper. Grey levels at the lens' axis, under full light.

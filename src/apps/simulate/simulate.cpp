@@ -62,6 +62,7 @@ simulation::Scene makeScene(const SimulateOptions& options) {
   recording.blurred_ratio = options.blurred_ratio;
   recording.max_blur_px = options.max_blur_px;
   recording.hand_ratio = options.hand_ratio;
+  recording.exposure_ratio = options.exposure_ratio;
   recording.sensor = sensor(options);
   recording.seed = options.seed;
   return simulation::makeRecording(recording);

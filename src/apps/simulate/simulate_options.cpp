@@ -41,6 +41,7 @@ Views
   --blurred RATIO   part of the views with motion blur (0)
   --motion-blur PX  longest of it (8)
   --hands RATIO     part of the views with a hand before the board (0)
+  --exposure RATIO  above 1 white paper is cut off at 255 (1)
   --psf PX          standard deviation of the lens' blur (0.6)
   --noise GREY      standard deviation of the noise at half of full scale, of 255 (2)
   --seed N          another recording of the same kind (1)
@@ -80,7 +81,8 @@ po::options_description describe() {
   options.add_options()("target", po::value<std::string>(), "")("views", po::value<int>(), "");
   options.add_options()("rate", po::value<double>(), "")("blurred", po::value<double>(), "");
   options.add_options()("motion-blur", po::value<double>(), "")("hands", po::value<double>(), "");
-  options.add_options()("psf", po::value<double>(), "")("noise", po::value<double>(), "");
+  options.add_options()("exposure", po::value<double>(), "")("psf", po::value<double>(), "")("noise", po::value<double>(),
+                                                                                             "");
   options.add_options()("seed", po::value<std::int64_t>(), "")("threads", po::value<int>(), "");
   return options;
 }
@@ -137,6 +139,7 @@ void check(const SimulateOptions& options) {
   require(is_ratio(options.blurred_ratio), "--blurred must be from 0 to 1");
   require(is_ratio(options.hand_ratio), "--hands must be from 0 to 1");
   require(options.max_blur_px >= 0.0 && options.max_blur_px <= 100.0, "--motion-blur must be from 0 to 100 px");
+  require(options.exposure_ratio > 0.0 && options.exposure_ratio <= 100.0, "--exposure must be above 0 and at most 100");
   require(options.psf_sigma_px >= 0.0 && options.psf_sigma_px <= 20.0, "--psf must be from 0 to 20 px");
   require(options.noise_grey >= 0.0 && options.noise_grey <= 255.0, "--noise must be from 0 to 255");
   require(options.num_threads >= 0, "--threads must not be negative");
@@ -168,6 +171,7 @@ std::optional<SimulateOptions> parseSimulateOptions(const std::vector<std::strin
   take("blurred", options.blurred_ratio);
   take("motion-blur", options.max_blur_px);
   take("hands", options.hand_ratio);
+  take("exposure", options.exposure_ratio);
   take("psf", options.psf_sigma_px);
   take("noise", options.noise_grey);
   std::int64_t seed = static_cast<std::int64_t>(options.seed);

@@ -22,6 +22,7 @@ struct SimulateOptions {
   double max_blur_px = 8.0;
   double hand_ratio = 0.0;
   double psf_sigma_px = 0.6;
+  double exposure_ratio = 1.0;
   double noise_grey = 2.0;  ///< standard deviation at half of full scale
   std::string target_file;  ///< empty: Kalibr's 6x6 AprilGrid with tags of 88 mm
   std::string output_bag;   ///< one of the two is given
