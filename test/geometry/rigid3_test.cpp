@@ -169,10 +169,12 @@ TEST_F(Rigid3Test, isReadFromAMatrixRoundedByAFile) {
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
 }
 
-TEST_F(Rigid3Test, isNeverAReflection) {
-  Eigen::Matrix4d mirrored = Eigen::Matrix4d::Identity();
-  mirrored(2, 2) = -1.0;
-  EXPECT_GT(rigidFromMatrix(mirrored).rotation.toRotationMatrix().determinant(), 0.0);
+TEST_F(Rigid3Test, isTheNearestRotationToAMatrixThatMirrors) {
+  const Rigid3 T = rigid();
+  const Eigen::Matrix3d basis = rigid().rotation.toRotationMatrix();
+  Eigen::Matrix4d mirrored = T.matrix();
+  mirrored.topLeftCorner<3, 3>() *= basis * Eigen::Vector3d(1.0, 1.0, -0.01).asDiagonal() * basis.transpose();
+  expectSame(rigidFromMatrix(mirrored), T, 1e-14);
 }
 
 }  // namespace
