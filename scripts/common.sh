@@ -4,11 +4,18 @@
 set -euo pipefail
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
-# shellcheck disable=SC2034
 workspace=$repository/build/ws
 
 # catkin and roslaunch need the distribution's Python; another one first on PATH (pyenv, conda) lacks their modules.
 PATH=/usr/bin:/bin:$PATH
+
+# source_workspace: makes rosrun and roslaunch know the built package.
+source_workspace() {
+  set +u  # catkin's script reads variables that may be unset
+  # shellcheck disable=SC1091
+  source "$workspace/devel/setup.bash"
+  set -u
+}
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -43,7 +50,8 @@ ensure_packages() {
 # What the core needs, what ROS adds, and what the tests add.
 core_packages=(cmake g++ make libapriltag-dev libboost-program-options-dev libeigen3-dev libopencv-dev libsuitesparse-dev
   libyaml-cpp-dev)
-ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-roslaunch ros-environment rosbash)
+ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-roslaunch
+  python3-yaml ros-environment rosbash)
 test_packages=(libgtest-dev)
 # shellcheck disable=SC2034
 all_packages=("${core_packages[@]}" "${ros_packages[@]}" "${test_packages[@]}")

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "calibrate_cameras/rig_file.h"
 #include "common/program.h"
 
 namespace tartan_calib::apps {
@@ -261,7 +262,7 @@ std::vector<std::string> kalibrFlags() { return names(kalibrOptions()); }
 std::vector<std::string> ownFlags() { return names(ownOptions()); }
 
 Arguments parseArguments(const std::vector<std::string>& words) {
-  const Values values(parse(words));
+  const Values values(parse(withRigFile(words)));
   Arguments arguments;
   arguments.help = values.has("help");
   if (arguments.help) {

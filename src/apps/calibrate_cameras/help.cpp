@@ -16,6 +16,7 @@ What to calibrate
   --models M [M ...]        one per topic: pinhole-none, pinhole-radtan, pinhole-equi, pinhole-fov,
                             omni-none, omni-radtan, eucm-none, ds-none
   --target F                board: YAML as Kalibr's (aprilgrid, checkerboard, circlegrid)
+  --rig F                   YAML file with flags, for all recordings of a rig: config/rigs/example_stereo.yaml
   --corners F               calibrate from a file of --export-corners instead of images
 
 Which images

@@ -1,0 +1,181 @@
+"""Bad input ends in one [ERROR] line that names cause and remedy, in the right exit code, and leaves no file behind."""
+
+import os
+import shutil
+import unittest
+
+from programs import PROGRAMS, Recordings, calibrate, interrupt_after, run, run_command
+
+GOOD_TARGET = {"target_type": "'aprilgrid'", "tagCols": "6", "tagRows": "6", "tagSize": "0.088", "tagSpacing": "0.3"}
+
+
+class BadInput(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.recordings = Recordings()
+        cls.addClassCleanup(cls.recordings.remove)
+        cls.folder = cls.recordings.path
+        cls.bag = cls.recordings.simulate("rig", "--lens", "pinhole70", "--resolution", "480x400", "--views", 6, "--cameras", 2)
+        cls.target = cls.recordings.target("rig")
+
+    def assert_refused(self, finished, code, *words):
+        """One line on standard error with these words, that exit code, and no result file anywhere."""
+        lines = finished.stderr.splitlines()
+        self.assertEqual(len(lines), 1, finished.stderr)
+        self.assertTrue(lines[0].startswith("[ERROR]"), lines[0])
+        for word in words:
+            self.assertIn(word, lines[0])
+        self.assertEqual(finished.returncode, code, lines[0])
+        for pattern in ("*-camchain.yaml*", "*-results-cam.txt*", "*-calibration.yaml*", "*.tmp*"):
+            left = [file.name for file in self.folder.rglob(pattern) if "-truth-" not in file.name]
+            self.assertEqual(left, [])
+
+    def calibrate(self, bag=None, target=None, models=("pinhole-radtan",), topics=None, extra=()):
+        return calibrate(bag or self.bag, target or self.target, models, topics, extra)
+
+    def written(self, name, text):
+        file = self.folder / name
+        file.write_text(text) if isinstance(text, str) else file.write_bytes(text)
+        return file
+
+    def board(self, **changes):
+        """A target file with keys changed, or left out where the change is None."""
+        keys = {key: value for key, value in {**GOOD_TARGET, **changes}.items() if value is not None}
+        return self.written("board.yaml", "".join(f"{key}: {value}\n" for key, value in keys.items()))
+
+
+class WrongCommandLine(BadInput):
+    def test_flags(self):
+        self.assert_refused(self.calibrate(extra=["--bag-freq", "often"]), 2, "bag-freq")
+        self.assert_refused(self.calibrate(extra=["--bag-from-to", "1"]), 2, "bag-from-to")
+        self.assert_refused(self.calibrate(extra=["--min-views-outlier", "0"]), 2, "--min-views-outlier", "positive")
+        self.assert_refused(self.calibrate(extra=["--mo", "a", "--no-"]), 2, "ambiguous")
+
+    def test_missing_flags(self):
+        everything = {"--bag": [self.bag], "--target": [self.target], "--topics": ["/cam0/image_raw"], "--models": ["ds-none"]}
+        for flag in everything:
+            words = [word for other, values in everything.items() if other != flag for word in (other, *values)]
+            self.assert_refused(run("calibrate_cameras", *words), 2, flag)
+
+    def test_a_model_too_few(self):
+        topics = ["/cam0/image_raw", "/cam1/image_raw"]
+        self.assert_refused(self.calibrate(topics=topics), 2, "one camera model per topic")
+
+    def test_an_unknown_model_is_answered_with_the_known_ones(self):
+        self.assert_refused(self.calibrate(models=["pinhole"]), 1, "model: pinhole.", "pinhole-radtan", "ds-none")
+
+
+class WrongRecording(BadInput):
+    def test_a_bag_that_is_not_there(self):
+        self.assert_refused(self.calibrate(bag=self.folder / "nowhere.bag"), 1, "nowhere.bag")
+
+    def test_a_bag_that_is_none(self):
+        self.assert_refused(self.calibrate(bag=self.written("text.bag", "no bag\n" * 100)), 1, "text.bag")
+        self.assert_refused(self.calibrate(bag=self.written("empty.bag", "")), 1, "empty.bag")
+
+    def test_a_bag_that_ends_early(self):
+        data = self.bag.read_bytes()
+        self.assert_refused(self.calibrate(bag=self.written("cut.bag", data[: len(data) // 2])), 1, "cut.bag")
+
+    def test_a_folder_without_images(self):
+        (self.folder / "empty").mkdir(exist_ok=True)
+        self.assert_refused(self.calibrate(bag=self.folder / "empty"), 1, "empty")
+
+    def test_a_misspelt_topic_is_answered_with_the_image_topics(self):
+        self.assert_refused(self.calibrate(topics=["/cam7"]), 1, "/cam7", "/cam0/image_raw", "/cam1/image_raw")
+
+    def test_a_time_window_without_images(self):
+        self.assert_refused(self.calibrate(extra=["--bag-from-to", "3", "1"]), 1, "time window", "start")
+        self.assert_refused(self.calibrate(extra=["--bag-from-to", "1000", "2000"]), 1, "/cam0/image_raw", "lasts")
+
+    def test_a_rate_that_is_none(self):
+        for rate in ("-1", "0", "nan"):
+            self.assert_refused(self.calibrate(extra=["--bag-freq", rate]), 1, "images per second")
+
+    def test_an_encoding_that_is_no_image_is_named_with_its_topic(self):
+        length = (5).to_bytes(4, "little")
+        data = self.bag.read_bytes().replace(length + b"mono8", length + b"32FC1")
+        self.assert_refused(self.calibrate(bag=self.written("float.bag", data)), 1, "/cam0/image_raw", "32FC1")
+
+    def test_a_board_that_is_not_in_the_images(self):
+        board = self.written("checkers.yaml", "target_type: 'checkerboard'\ntargetCols: 17\ntargetRows: 23\n"
+                                              "rowSpacingMeters: 0.02\ncolSpacingMeters: 0.02\n")
+        self.assert_refused(self.calibrate(target=board), 1, "/cam0/image_raw")
+
+    def test_cameras_that_never_see_the_board_together(self):
+        folder = self.folder / "apart"
+        arguments = ["--lens", "pinhole70", "--resolution", "480x400", "--views", 12, "--cameras", 2]
+        self.assertEqual(run("simulate", "--output-dir", folder, *arguments).returncode, 0)
+        images = [sorted((folder / camera).iterdir()) for camera in ("cam0", "cam1")]
+        for file in images[0][6:] + images[1][:6]:
+            file.unlink()
+        self.assert_refused(self.calibrate(bag=folder, models=["pinhole-radtan"] * 2), 1, "cam0", "cam1", "--approx-sync")
+        shutil.rmtree(folder)
+
+
+class WrongTarget(BadInput):
+    def test_a_file_that_is_not_there(self):
+        self.assert_refused(self.calibrate(target=self.folder / "nowhere.yaml"), 1, "nowhere.yaml")
+
+    def test_a_file_that_is_no_yaml(self):
+        self.assert_refused(self.calibrate(target=self.written("board.yaml", "a: [1\nb: }")), 1, "board.yaml")
+
+    def test_a_missing_key_is_named_with_the_file(self):
+        for key in GOOD_TARGET:
+            self.assert_refused(self.calibrate(target=self.board(**{key: None})), 1, "board.yaml", key)
+
+    def test_an_unknown_type_is_answered_with_the_known_ones(self):
+        finished = self.calibrate(target=self.board(target_type="'chessboard'"))
+        self.assert_refused(finished, 1, "chessboard", "aprilgrid", "checkerboard", "circlegrid")
+
+    def test_values_that_are_none(self):
+        for key, value in (("tagSize", "0.0"), ("tagSize", "-1"), ("tagSize", "big"), ("tagSpacing", "0"), ("tagRows", "2.5"),
+                           ("tagRows", "0"), ("tagCols", "[6]"), ("tagFamily", "'t1h1'"), ("tagBorder", "0")):
+            self.assert_refused(self.calibrate(target=self.board(**{key: value})), 1, "board.yaml", key)
+
+
+class CannotFinish(BadInput):
+    def test_ctrl_c_ends_it_without_files(self):
+        code, output = interrupt_after("Initializing cam0", "calibrate_cameras", "--bag", self.bag, "--target", self.target,
+                                       "--topics", "/cam0/image_raw", "--models", "pinhole-radtan")
+        self.assertEqual(code, 130, output)
+        self.assertIn("Shutdown requested! (CTRL+C)", output)
+        self.assertEqual([file for file in self.folder.glob("rig-*") if "truth" not in file.name], [self.target])
+
+    def test_a_result_folder_that_does_not_exist(self):
+        corners = self.folder / "nowhere" / "x-corners.csv"
+        finished = run("calibrate_cameras", "--corners", corners, "--target", self.target, "--models", "ds-none")
+        self.assert_refused(finished, 1, "nowhere")
+
+    @unittest.skipUnless(os.geteuid() == 0, "a full disk is mounted, which needs root")
+    def test_a_full_disk_leaves_whole_files_or_none(self):
+        good, full = self.folder / "good", self.folder / "full"
+        for folder in (good, full):
+            folder.mkdir()
+            self.addCleanup(shutil.rmtree, folder)
+        (good / "x.bag").symlink_to(self.bag)
+        self.assertEqual(self.calibrate(bag=good / "x.bag").returncode, 0)
+        program = self.program_on_small_disk(full, good / "left")
+        finished = run_command("unshare", "--mount", "sh", "-c", program)
+        if "unshare" in finished.stderr or "mount:" in finished.stderr:
+            self.skipTest(finished.stderr)
+        reference = {file.name: file.read_bytes() for file in good.glob("x-*")}
+        left = {file.name: file.read_bytes() for file in (good / "left").iterdir() if file.name != "x.bag"}
+        for name, data in left.items():
+            self.assertEqual(data, reference.get(name), name)
+        self.assertLess(len(left), len(reference))
+        self.assertEqual(finished.returncode, 1, finished.stderr)
+        self.assertRegex(finished.stderr, r"^\[ERROR\].*/x-[^\n]*\n$")
+
+    def program_on_small_disk(self, folder, left):
+        """Calibrates on a disk of two pages, keeps what was left there, and returns the exit code of the calibration."""
+        command = (f"{PROGRAMS}/calibrate_cameras --bag '{folder}/x.bag' --target '{self.target}' --topics /cam0/image_raw "
+                   "--models pinhole-radtan")
+        return (f"mount -t tmpfs -o size=8k none '{folder}' && ln -s '{self.bag}' '{folder}/x.bag' && "
+                f"{{ {command}; code=$?; cp -r '{folder}' '{left}'; exit $code; }}")
+
+
+del BadInput  # the base holds no test of its own
+
+if __name__ == "__main__":
+    unittest.main()
