@@ -82,7 +82,6 @@ BatchProblem::BatchProblem(const Problem& problem, const SolveOptions& options)
       model = withinBounds(model, camera::parameters(model));
     }
   }
-  previous_ = state_;
 }
 
 int BatchProblem::numParameters(int camera_index) const {
@@ -164,7 +163,6 @@ solver::StepLimits BatchProblem::stepLimits() const {
 }
 
 void BatchProblem::move(const solver::Step& step) {
-  previous_ = state_;
   for (std::size_t i = 0; i < state_.rig.cameras.size(); ++i) {
     RigCamera& rig_camera = state_.rig.cameras[i];
     const int extrinsics = layout_.extrinsics(static_cast<int>(i));
@@ -187,8 +185,8 @@ void BatchProblem::move(const solver::Step& step) {
   }
 }
 
-void BatchProblem::undo() {
-  state_ = previous_;
+void BatchProblem::restore() {
+  state_ = saved_;
   board_.bend(state_.board_warp_m);
 }
 

@@ -58,7 +58,8 @@ class BatchProblem : public solver::BlockProblem {
   double cost(int view) const override;
   solver::BlockTerms linearize(int view) const override;
   void move(const solver::Step& step) override;
-  void undo() override;
+  void save() override { saved_ = state_; }
+  void restore() override;
 
  private:
   int numParameters(int camera_index) const;
@@ -71,7 +72,7 @@ class BatchProblem : public solver::BlockProblem {
   WarpedBoard board_;
   std::vector<RobustLoss> losses_;
   SolveState state_;
-  SolveState previous_;
+  SolveState saved_;
 };
 
 }  // namespace tartan_calib::calibration

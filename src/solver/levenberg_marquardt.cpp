@@ -20,9 +20,11 @@ constexpr double kMaxDamping = 1e12;
 /// Part of the cost that a failed step may have promised at the minimum. In a valley that is bent as well as nearly flat the
 /// quadratic model promises so much without end; what is left to gain moves parameters by 1e-3 of their uncertainty or so.
 constexpr double kNegligible_ratio = 1e-8;
-constexpr double kDampingDecrease = 0.1;
-constexpr double kDampingIncrease = 10.0;  ///< grows with every rejection in a row
-constexpr double kGoodGain = 0.5;          ///< actual over promised change of cost from which on damping falls
+constexpr double kDampingDecrease = 0.3;
+constexpr double kDampingIncrease = 3.0;  ///< grows with every rejection in a row
+constexpr int kMaxCorrections = 2;
+constexpr double kMaxRise = 10.0;  ///< a step that raises the cost by more is beyond correction
+constexpr double kGoodGain = 0.5;  ///< actual over promised change of cost from which on damping falls
 
 /// A step with what the quadratic model promises.
 struct Candidate {
@@ -54,7 +56,7 @@ class Minimizer {
   }
 
   void iterate() {
-    const std::optional<Candidate> candidate = propose();
+    const std::optional<Candidate> candidate = propose(equations_);
     if (!candidate) {
       reject();
     } else if (candidate->promised <= tolerance()) {
@@ -78,17 +80,39 @@ class Minimizer {
   }
 
   bool tryStep(const Candidate& candidate) {
+    problem_.save();
     problem_.move(candidate.step);
-    const double cost = totalCost(problem_, options_.num_threads);
-    const double gain = (equations_.cost - cost) / candidate.promised;
-    if (!(gain > 0.0)) {
-      problem_.undo();
+    double cost = totalCost(problem_, options_.num_threads);
+    if (!(cost < equations_.cost)) {
+      cost = costAfterCorrection(cost);
+    }
+    if (!(cost < equations_.cost)) {
+      problem_.restore();
       failed_promise_ = std::max(failed_promise_, candidate.promised);
       return false;
     }
-    if (gain > kGoodGain) {
+    if (equations_.cost - cost > kGoodGain * candidate.promised) {
       damping_ = std::max(kMinDamping, damping_ * kDampingDecrease);
     }
+    accept();
+    return true;
+  }
+
+  /// Where unknowns trade off against each other, the cost is a narrow curved valley: a long step along it ends up on its
+  /// side, another from there back on its floor. Without the second only short ones would lower the cost.
+  double costAfterCorrection(double cost) {
+    for (int i = 0; i < kMaxCorrections && cost >= equations_.cost && cost < kMaxRise * equations_.cost; ++i) {
+      const std::optional<Candidate> correction = propose(linearizeAll(problem_, options_.num_threads));
+      if (!correction) {
+        return cost;
+      }
+      problem_.move(correction->step);
+      cost = totalCost(problem_, options_.num_threads);
+    }
+    return cost;
+  }
+
+  void accept() {
     increase_ = kDampingIncrease;
     undamped_failed_ = false;
     failed_promise_ = 0.0;
@@ -99,7 +123,6 @@ class Minimizer {
     } else if (summary_.iterations >= options_.max_iterations) {
       finish(Status::kMaxIterations);
     }
-    return true;
   }
 
   void reject() {
@@ -111,9 +134,9 @@ class Minimizer {
     }
   }
 
-  std::optional<Step> solve(const Prescribed& prescribed) const {
-    return use_sparse_ ? solveSparse(equations_, damping_, prescribed)
-                       : solveSchur(equations_, damping_, prescribed, options_.num_threads);
+  std::optional<Step> solve(const NormalEquations& equations, const Prescribed& prescribed) const {
+    return use_sparse_ ? solveSparse(equations, damping_, prescribed)
+                       : solveSchur(equations, damping_, prescribed, options_.num_threads);
   }
 
   bool useSparse() const {
@@ -122,16 +145,16 @@ class Minimizer {
   }
 
   /// The damped step within the limits: unknowns that would pass a limit are sent to it, and the others solved for anew.
-  std::optional<Candidate> propose() const {
+  std::optional<Candidate> propose(const NormalEquations& equations) const {
     const StepLimits limits = problem_.stepLimits();
-    Prescribed prescribed = holdActiveBounds(equations_, limits);
+    Prescribed prescribed = holdActiveBounds(equations, limits);
     while (true) {
-      std::optional<Step> step = solve(prescribed);
+      std::optional<Step> step = solve(equations, prescribed);
       if (!step || !step->shared.allFinite()) {
         return std::nullopt;
       }
       if (!prescribeViolations(*step, limits, prescribed)) {
-        const double promised = -modelChange(equations_, *step);
+        const double promised = -modelChange(equations, *step);
         return Candidate{std::move(*step), promised};
       }
     }

@@ -11,13 +11,14 @@
 namespace tartan_calib::solver {
 namespace {
 
-/// Rosenbrock's valley, r = (10 (y - x^2), 1 - x), with an own unknown of one block that wants to be x.
+/// Rosenbrock's valley, r = (steepness (y - x^2), 1 - x), with an own unknown of one block that wants to be x.
 class Rosenbrock : public BlockProblem {
  public:
   double x = -1.2;
   double y = 1.0;
   double max_x = std::numeric_limits<double>::infinity();
   double b = 0.0;
+  double steepness = 10.0;
 
   int numShared() const override { return 2; }
   int numBlocks() const override { return 1; }
@@ -28,7 +29,7 @@ class Rosenbrock : public BlockProblem {
   double cost(int /*block*/) const override { return 0.5 * residuals().squaredNorm(); }
   BlockTerms linearize(int /*block*/) const override {
     Eigen::Matrix<double, 3, 2> J_s;
-    J_s << -20.0 * x, 10.0, -1.0, 0.0, 1.0, 0.0;
+    J_s << -2.0 * steepness * x, steepness, -1.0, 0.0, 1.0, 0.0;
     const Eigen::Vector3d J_b(0.0, 0.0, -1.0);
     BlockTerms terms;
     terms.cost = cost(0);
@@ -42,21 +43,21 @@ class Rosenbrock : public BlockProblem {
     return terms;
   }
   void move(const Step& step) override {
-    previous_ = {x, y, b};
     x = std::min(max_x, x + step.shared(0));
     y += step.shared(1);
     b += step.blocks[0](0);
   }
-  void undo() override {
-    x = previous_.x();
-    y = previous_.y();
-    b = previous_.z();
+  void save() override { saved_ = {x, y, b}; }
+  void restore() override {
+    x = saved_.x();
+    y = saved_.y();
+    b = saved_.z();
   }
 
  private:
-  Eigen::Vector3d residuals() const { return {10.0 * (y - x * x), 1.0 - x, x - b}; }
+  Eigen::Vector3d residuals() const { return {steepness * (y - x * x), 1.0 - x, x - b}; }
 
-  Eigen::Vector3d previous_;
+  Eigen::Vector3d saved_;
 };
 
 /// The default tolerance promises the cost to 1e-12, unknowns to about its root.
@@ -192,6 +193,18 @@ TEST(LevenbergMarquardt, StopsWhenAskedTo) {
   EXPECT_EQ(summary.iterations, 2);
 }
 
+TEST(LevenbergMarquardt, FollowsANarrowCurvedValley) {
+  // Damped steps that never climb its sides take 223.
+  constexpr int kMaxIterations = 30;
+  Rosenbrock problem;
+  problem.steepness = 100.0;
+  Options options;
+  options.max_iterations = kMaxIterations;
+  const Summary summary = minimize(problem, options);
+  EXPECT_EQ(summary.status, Status::kConverged);
+  EXPECT_NEAR(problem.x, 1.0, kAccuracy);
+}
+
 TEST(LevenbergMarquardt, SaysWhenIterationsRunOut) {
   Rosenbrock problem;
   Options options;
@@ -199,20 +212,25 @@ TEST(LevenbergMarquardt, SaysWhenIterationsRunOut) {
   EXPECT_EQ(minimize(problem, options).status, Status::kMaxIterations);
 }
 
-/// States the gradient of one unknown with the wrong sign.
+/// States a slope that the cost does not have.
 class WrongJacobian : public RandomProblem {
  public:
   using RandomProblem::RandomProblem;
+  double slope_error = 1.0;
+
   BlockTerms linearize(int k) const override {
     BlockTerms terms = RandomProblem::linearize(k);
-    terms.g_s(0) = -terms.g_s(0);
+    terms.g_s(0) += slope_error;
     return terms;
   }
 };
 
-TEST(LevenbergMarquardt, ReportsThatItStallsOnAWrongJacobian) {
+TEST(LevenbergMarquardt, ReportsThatItStallsWhereAWrongJacobianPointsUphill) {
   WrongJacobian problem{RandomProblemOptions()};
-  EXPECT_NE(minimize(problem, {}).status, Status::kConverged);
+  problem.slope_error = 0.0;
+  ASSERT_EQ(minimize(problem, {}).status, Status::kConverged);
+  problem.slope_error = 1.0;
+  EXPECT_EQ(minimize(problem, {}).status, Status::kStalled);
 }
 
 TEST(DerivativeCheck, TellsARightJacobianFromAWrongOne) {

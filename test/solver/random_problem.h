@@ -82,16 +82,18 @@ class RandomProblem : public BlockProblem {
   }
 
   void move(const Step& step) override {
-    previous_s_ = s_;
-    previous_b_ = b_;
     s_ = (s_ + step.shared).cwiseMax(limits_.lower).cwiseMin(limits_.upper);
     for (std::size_t k = 0; k < b_.size(); ++k) {
       b_[k] += step.blocks[k];
     }
   }
-  void undo() override {
-    s_ = previous_s_;
-    b_ = previous_b_;
+  void save() override {
+    saved_s_ = s_;
+    saved_b_ = b_;
+  }
+  void restore() override {
+    s_ = saved_s_;
+    b_ = saved_b_;
   }
 
  private:
@@ -112,9 +114,9 @@ class RandomProblem : public BlockProblem {
   std::mt19937 random_;
   StepLimits limits_;
   Eigen::VectorXd s_;
-  Eigen::VectorXd previous_s_;
+  Eigen::VectorXd saved_s_;
   std::vector<BlockVector> b_;
-  std::vector<BlockVector> previous_b_;
+  std::vector<BlockVector> saved_b_;
 };
 
 /// The normal equations of all unknowns (shared, then block by block) as one dense matrix.

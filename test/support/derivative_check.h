@@ -39,12 +39,13 @@ inline double costAfter(solver::BlockProblem& problem, const Eigen::VectorXd& al
   for (int k = 0; k < problem.numBlocks(); ++k) {
     step.blocks.emplace_back(all_unknowns.segment<solver::kBlockSize>(problem.numShared() + solver::kBlockSize * k));
   }
+  problem.save();
   problem.move(step);
   double cost = 0.0;
   for (int k = 0; k < problem.numBlocks(); ++k) {
     cost += problem.cost(k);
   }
-  problem.undo();
+  problem.restore();
   return cost;
 }
 

@@ -50,8 +50,10 @@ class BlockProblem {
 
   /// Goes to `state (+) step`. Steps within the limits leave the state within its bounds, and on them where they reach them.
   virtual void move(const Step& step) = 0;
-  /// Returns to where the state was before the last move.
-  virtual void undo() = 0;
+
+  /// Remembers the state, and returns to the one remembered last.
+  virtual void save() = 0;
+  virtual void restore() = 0;
 };
 
 }  // namespace tartan_calib::solver
