@@ -51,8 +51,8 @@ ensure_packages() {
 core_packages=(cmake g++ make libapriltag-dev libboost-program-options-dev libeigen3-dev libopencv-dev libsuitesparse-dev
   libyaml-cpp-dev)
 ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-roslaunch
-  python3-yaml ros-environment rosbash)
-test_packages=(libgtest-dev)
+  ros-environment rosbash)
+test_packages=(libgtest-dev python3-yaml)
 # shellcheck disable=SC2034
 all_packages=("${core_packages[@]}" "${ros_packages[@]}" "${test_packages[@]}")
 

@@ -1,0 +1,63 @@
+#include "compare_camchains/comparison.h"
+
+#include <boost/program_options.hpp>
+#include <iostream>
+
+#include "common/program.h"
+
+namespace {
+
+namespace po = boost::program_options;
+using namespace tartan_calib;
+using namespace tartan_calib::apps;
+
+constexpr const char* kHelp = R"(Compares two calibrations of the same cameras.
+
+  rosrun tartan_calib compare_camchains rig-camchain.yaml other-camchain.yaml
+
+Parameters make up for each other (the scale and the shape of a lens, above all), so what counts is where the two send the same
+ray: the difference of the projections over the image, with the rotation between the two camera frames removed.
+
+  --max-angle-deg A   look at rays to this angle from the axis (90)
+  -h, --help          this text
+)";
+
+constexpr double kDefaultMaxAngle_deg = 90.0;
+constexpr double kRadiansPerDegree = 0.017453292519943295;
+
+po::variables_map parse(int argc, char** argv) {
+  po::options_description options;
+  options.add_options()("help,h", "")("max-angle-deg", po::value<double>()->default_value(kDefaultMaxAngle_deg));
+  options.add_options()("camchain", po::value<std::vector<std::string>>());
+  po::positional_options_description files;
+  files.add("camchain", -1);
+  po::variables_map values;
+  try {
+    po::store(po::command_line_parser(argc, argv).options(options).positional(files).run(), values);
+  } catch (const po::error& error) {
+    throw UsageError(std::string(error.what()) + "; see --help");
+  }
+  return values;
+}
+
+int run(int argc, char** argv) {
+  const po::variables_map values = parse(argc, argv);
+  if (argc == 1 || values.count("help") > 0) {
+    std::cout << kHelp;
+    return argc == 1 ? kWrongUsage : kSuccess;
+  }
+  const auto files =
+      values.count("camchain") > 0 ? values["camchain"].as<std::vector<std::string>>() : std::vector<std::string>{};
+  if (files.size() != 2) {
+    throw UsageError("two camchain files are needed; see --help");
+  }
+  const double max_angle_rad = values["max-angle-deg"].as<double>() * kRadiansPerDegree;
+  std::cout << comparisonText(io::loadCamchain(files[0]), io::loadCamchain(files[1]), max_angle_rad);
+  return kSuccess;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runProgram([&] { return run(argc, argv); });
+}

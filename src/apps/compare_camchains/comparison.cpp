@@ -1,0 +1,93 @@
+#include "compare_camchains/comparison.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "tartan_calib/calibration/compare.h"
+#include "tartan_calib/error.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+constexpr double kSampleSpacing_px = 10.0;
+
+/// Pixels of a grid over the image that see no further than `max_angle_rad` from the axis.
+std::vector<Eigen::Vector2d> samplesWithin(const camera::Camera& camera, double max_angle_rad) {
+  std::vector<Eigen::Vector2d> samples;
+  for (const Eigen::Vector2d& px : calibration::imageGrid(camera.width, camera.height, kSampleSpacing_px)) {
+    const auto ray = camera::unproject(camera.model, px);
+    if (ray && std::atan2(ray->head<2>().norm(), ray->z()) <= max_angle_rad) {
+      samples.push_back(px);
+    }
+  }
+  return samples;
+}
+
+void checkSameRig(const calibration::Rig& a, const calibration::Rig& b) {
+  if (a.cameras.size() != b.cameras.size()) {
+    throw InputError("the calibrations have " + std::to_string(a.cameras.size()) + " and " +
+                     std::to_string(b.cameras.size()) + " cameras; they must be of the same rig");
+  }
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    const camera::Camera& first = a.cameras[i].camera;
+    const camera::Camera& second = b.cameras[i].camera;
+    if (first.width != second.width || first.height != second.height) {
+      throw InputError("cam" + std::to_string(i) + " has images of different sizes in the two calibrations");
+    }
+  }
+}
+
+void writeParameters(std::ostream& out, const camera::CameraModel& a, const camera::CameraModel& b) {
+  constexpr int kWidth = 14;
+  const Eigen::VectorXd first = camera::parameters(a);
+  const Eigen::VectorXd second = camera::parameters(b);
+  for (Eigen::Index i = 0; i < first.size(); ++i) {
+    out << "  " << std::setw(kWidth) << first[i] << std::setw(kWidth) << second[i] << std::setw(kWidth) << std::showpos
+        << first[i] - second[i] << std::noshowpos << '\n';
+  }
+}
+
+}  // namespace
+
+std::vector<CameraComparison> compareRigs(const calibration::Rig& a, const calibration::Rig& b, double max_angle_rad) {
+  checkSameRig(a, b);
+  std::vector<CameraComparison> comparisons;
+  comparisons.reserve(a.cameras.size());
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    const calibration::RigCamera& first = a.cameras[i];
+    const calibration::RigCamera& second = b.cameras[i];
+    const auto projection =
+        calibration::compareProjections(first.camera.model, second.camera.model, samplesWithin(first.camera, max_angle_rad));
+    const geometry::Rigid3 T_a_b = first.T_cam_rig * second.T_cam_rig.inverse();
+    comparisons.push_back({projection.rms_px, projection.max_px, geometry::logRigid(T_a_b).tail<3>().norm(),
+                           (first.T_cam_rig.translation - second.T_cam_rig.translation).norm()});
+  }
+  return comparisons;
+}
+
+std::string comparisonText(const io::Camchain& a, const io::Camchain& b, double max_angle_rad) {
+  constexpr double kDegreesPerRadian = 57.29577951308232;
+  constexpr double kMilli = 1e3;
+  const std::vector<CameraComparison> comparisons = compareRigs(a.rig, b.rig, max_angle_rad);
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(6);
+  for (std::size_t i = 0; i < comparisons.size(); ++i) {
+    const camera::CameraModel& first = a.rig.cameras[i].camera.model;
+    const camera::CameraModel& second = b.rig.cameras[i].camera.model;
+    out << "cam" << i << ", " << camera::modelName(first) << " and " << camera::modelName(second) << '\n';
+    if (first.index() == second.index()) {
+      out << "  parameters of both in the camchain's order, and their difference:\n";
+      writeParameters(out, first, second);
+    }
+    out << "  projection to " << std::setprecision(1) << max_angle_rad * kDegreesPerRadian << std::setprecision(6)
+        << " degrees: differs by " << comparisons[i].rms_px << " px rms, " << comparisons[i].max_px << " px at most\n";
+    if (i > 0) {
+      out << "  place on the rig: differs by " << comparisons[i].rotation_rad * kMilli << " mrad and "
+          << comparisons[i].translation_m * kMilli << " mm\n";
+    }
+  }
+  return out.str();
+}
+
+}  // namespace tartan_calib::apps

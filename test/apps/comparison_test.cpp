@@ -1,0 +1,57 @@
+#include "compare_camchains/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include "tartan_calib/error.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+constexpr double kMaxAngle_rad = 1.5;
+
+calibration::RigCamera fisheye(double focal_px) {
+  calibration::RigCamera camera;
+  camera.camera.model = camera::startModel(camera::modelByName("ds-none"), focal_px, {319.5, 239.5});
+  camera.camera.width = 640;
+  camera.camera.height = 480;
+  return camera;
+}
+
+TEST(CompareRigs, ARigIsNoWayFromItself) {
+  const calibration::Rig rig{{fisheye(200.0), fisheye(210.0)}};
+  for (const CameraComparison& comparison : compareRigs(rig, rig, kMaxAngle_rad)) {
+    EXPECT_LT(comparison.max_px, 1e-9);
+    EXPECT_LT(comparison.rotation_rad, 1e-12);
+    EXPECT_EQ(comparison.translation_m, 0.0);
+  }
+}
+
+TEST(CompareRigs, AnotherPlaceOnTheRigIsToldInRadiansAndMetres) {
+  const calibration::Rig rig{{fisheye(200.0), fisheye(200.0)}};
+  calibration::Rig moved = rig;
+  geometry::Vector6d twist = geometry::Vector6d::Zero();
+  twist.tail<3>() << 0.0, 2e-3, 0.0;
+  moved.cameras[1].T_cam_rig = geometry::expRigid(twist);
+  moved.cameras[1].T_cam_rig.translation.x() = 5e-3;
+  const auto comparisons = compareRigs(rig, moved, kMaxAngle_rad);
+  EXPECT_LT(comparisons[0].rotation_rad, 1e-12);
+  EXPECT_NEAR(comparisons[1].rotation_rad, 2e-3, 1e-9);
+  EXPECT_NEAR(comparisons[1].translation_m, 5e-3, 1e-12);
+}
+
+TEST(CompareRigs, ALongerFocalLengthShowsMostAtTheRim) {
+  const auto comparison = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, kMaxAngle_rad).front();
+  EXPECT_GT(comparison.max_px, 1.5 * comparison.rms_px);
+  const auto narrow = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, 0.2).front();
+  EXPECT_LT(narrow.max_px, 0.3 * comparison.max_px);
+}
+
+TEST(CompareRigs, OtherRigsAreRefused) {
+  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {}, kMaxAngle_rad), InputError);
+  calibration::Rig larger{{fisheye(200.0)}};
+  larger.cameras[0].camera.width = 1000;
+  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, larger, kMaxAngle_rad), InputError);
+}
+
+}  // namespace
+}  // namespace tartan_calib::apps
