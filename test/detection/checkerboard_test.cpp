@@ -136,6 +136,20 @@ TEST(Checkerboard, isFoundBesideOneOfAnotherSize) {
   expectWholeBoard(detect(kBoard, scene.expose(0.6, 2.0)), truth, 0.02);
 }
 
+TEST(Checkerboard, isFoundWhereAStrangeSquareContinuesIt) {
+  BoardScene scene(test_support::pinholeCamera(640, 480, 500.0));
+  const auto truth = scene.add(kBoard, {0.6, 0.0, 0.0, 0.0, 0.0, 0.0});
+  const auto at = [&truth](double row, double col) {
+    const Eigen::Vector2d row_step = truth[static_cast<std::size_t>(kBoard.cols)].px - truth[0].px;
+    const Eigen::Vector2d px = truth[0].px + row * row_step + col * (truth[1].px - truth[0].px);
+    return cv::Point(static_cast<int>(std::lround(px.x())), static_cast<int>(std::lround(px.y())));
+  };
+  // Two more crossings in line with the columns, beyond the board's last squares.
+  const std::vector<cv::Point> square{at(-2, 4), at(-2, 5), at(-1, 5), at(-1, 4)};
+  cv::fillConvexPoly(scene.grey(), square, cv::Scalar(BoardScene::kBlackGrey));
+  expectWholeBoard(detect(kBoard, scene.expose(0.6, 2.0)), truth, 0.02);
+}
+
 TEST(Checkerboard, isFoundInClutter) {
   std::mt19937 random(3);
   BoardScene scene(test_support::pinholeCamera(640, 480, 500.0));
