@@ -1,6 +1,7 @@
 #include "tartan_calib/io/image_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -31,8 +32,8 @@ bool isImageFile(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  static const char* const kExtensions[] = {".png", ".jpg", ".jpeg", ".bmp", ".pgm"};
-  return std::find(std::begin(kExtensions), std::end(kExtensions), extension) != std::end(kExtensions);
+  constexpr std::array<const char*, 5> kExtensions = {".png", ".jpg", ".jpeg", ".bmp", ".pgm"};
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
 std::vector<fs::path> entries(const fs::path& folder) {
@@ -67,6 +68,8 @@ std::optional<std::int64_t> stampOf(const fs::path& path) {
   }
 }
 
+std::string topicOf(const std::string& camera) { return "/" + camera + kTopicSuffix; }
+
 std::string cameraName(const std::string& topic) {
   const std::size_t begin = std::min(topic.find_first_not_of('/'), topic.size());
   const std::string suffix = kTopicSuffix;
@@ -100,6 +103,7 @@ std::vector<StampedFile> listImages(const fs::path& folder, const std::string& t
 std::vector<StampedFile> selected(const std::vector<StampedFile>& files, const std::string& topic,
                                   const RecordingOptions& options) {
   std::vector<std::int64_t> stamps_ns;
+  stamps_ns.reserve(files.size());
   for (const StampedFile& file : files) {
     stamps_ns.push_back(file.stamp_ns);
   }
@@ -108,6 +112,14 @@ std::vector<StampedFile> selected(const std::vector<StampedFile>& files, const s
     result.push_back(files[i]);
   }
   return result;
+}
+
+InputError noSuchTopic(const std::string& folder, const std::string& topic, const std::vector<std::string>& known) {
+  std::string list;
+  for (const std::string& name : known) {
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  return InputError("folder " + folder + " has no images for topic " + topic + "; its image topics: " + list);
 }
 
 cv::Mat readGray(const fs::path& path) {
@@ -158,9 +170,7 @@ std::vector<std::string> imageFolderTopics(const std::string& folder) {
   }
   std::stable_sort(names.begin(), names.end(),
                    [](const std::string& a, const std::string& b) { return a.size() < b.size(); });
-  for (std::string& name : names) {
-    name = "/" + name + kTopicSuffix;
-  }
+  std::transform(names.begin(), names.end(), names.begin(), topicOf);
   return names;
 }
 
@@ -171,13 +181,9 @@ std::vector<pipeline::CameraStream> openImageFolder(const std::string& folder, c
   std::vector<pipeline::CameraStream> streams;
   for (const std::string& asked : topics) {
     const std::string camera = cameraName(asked);
-    const std::string topic = "/" + camera + kTopicSuffix;
+    const std::string topic = topicOf(camera);
     if (std::find(known.begin(), known.end(), topic) == known.end()) {
-      std::string list;
-      for (const std::string& name : known) {
-        list += (list.empty() ? "" : ", ") + name;
-      }
-      throw InputError("folder " + folder + " has no images for topic " + asked + "; its image topics: " + list);
+      throw noSuchTopic(folder, asked, known);
     }
     const std::vector<StampedFile> all = listImages(fs::path(folder) / camera, topic, options);
     const auto files = std::make_shared<const std::vector<StampedFile>>(selected(all, topic, options));

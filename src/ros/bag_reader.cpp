@@ -134,6 +134,7 @@ void addMessage(const rosbag::MessageInstance& message, TopicIndex& index) {
 /// One pass over the bag, in its own order, for all topics.
 void scan(const SharedBag& shared, std::map<std::string, TopicIndex>& indices) {
   std::vector<std::string> topics;
+  topics.reserve(indices.size());
   for (const auto& [topic, index] : indices) {
     topics.push_back(topic);
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibrate_cameras/flags.h"
 #include "common/program.h"
 
 namespace tartan_calib::apps {

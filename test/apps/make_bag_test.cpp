@@ -22,22 +22,23 @@ namespace fs = std::filesystem;
 
 class MakeBag : public ::testing::Test {
  protected:
-  MakeBag() : folder_(fs::temp_directory_path() / ("make_bag_test." + std::to_string(::getpid()))) {
-    fs::create_directories(folder_ / "cam0");
-    fs::create_directories(folder_ / "cam1");
+  MakeBag() : folder(fs::temp_directory_path() / ("make_bag_test." + std::to_string(::getpid()))) {
+    fs::create_directories(folder / "cam0");
+    fs::create_directories(folder / "cam1");
   }
-  ~MakeBag() override { fs::remove_all(folder_); }
+  ~MakeBag() override { fs::remove_all(folder); }
 
   void writeImage(const std::string& name, int value) {
-    cv::imwrite((folder_ / name).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(value)));
+    cv::imwrite((folder / name).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(value)));
   }
-  void writeText(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
-  static std::string pixels(int value) { return std::string(6 * 8, static_cast<char>(value)); }
+  void writeText(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
+  static constexpr std::size_t kNumPixels = 48;  // of writeImage
+  static std::string pixels(int value) { return std::string(kNumPixels, static_cast<char>(value)); }
   static std::string doubleBytes(double value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); }
-  std::string bag() const { return (folder_ / "out.bag").string(); }
+  std::string bag() const { return (folder / "out.bag").string(); }
 
-  fs::path folder_;
-  std::vector<std::string> notices_;
+  fs::path folder;
+  std::vector<std::string> notices;
 };
 
 TEST_F(MakeBag, StoresImagesAndImuByIncreasingStamp) {
@@ -45,7 +46,7 @@ TEST_F(MakeBag, StoresImagesAndImuByIncreasingStamp) {
   writeImage("cam1/2000.png", 20);
   writeImage("cam0/3000.png", 30);
   writeText("imu0.csv", "#stamp,wx,wy,wz,ax,ay,az\n2500,0.1,0.2,0.3,1,2,9.8\n500, 0, 0, 0, 0, 0, 9.81\n");
-  const BagContents contents = makeBag(folder_.string(), bag(), {});
+  const BagContents contents = makeBag(folder.string(), bag(), {});
   EXPECT_EQ(contents.num_images, 3U);
   EXPECT_EQ(contents.num_imu_samples, 2U);
 
@@ -63,8 +64,8 @@ TEST_F(MakeBag, KeepsStampsPixelsAndRates) {
   constexpr std::int64_t kStamp = 1606153907495166540;
   writeImage("cam0/" + std::to_string(kStamp) + ".png", 77);
   writeText("imu0.csv", std::to_string(kStamp) + ",0.1,0.2,0.3,1,2,9.8\n");
-  fs::remove(folder_ / "cam1");
-  makeBag(folder_.string(), bag(), {});
+  fs::remove(folder / "cam1");
+  makeBag(folder.string(), bag(), {});
   const auto image = ros::openBag(bag(), {"/cam0/image_raw"}, {}).front().open()();
   EXPECT_EQ(image->stamp_ns, kStamp);
   EXPECT_EQ(image->load().at<std::uint8_t>(5, 7), 77);
@@ -80,19 +81,18 @@ TEST_F(MakeBag, KeepsStampsPixelsAndRates) {
 TEST_F(MakeBag, LeavesOutBrokenImagesAndNamesThem) {
   writeImage("cam0/1000.png", 10);
   writeText("cam0/2000.png", "not an image");
-  const BagContents contents =
-      makeBag(folder_.string(), bag(), [this](const std::string& text) { notices_.push_back(text); });
+  const BagContents contents = makeBag(folder.string(), bag(), [this](const std::string& text) { notices.push_back(text); });
   EXPECT_EQ(contents.num_images, 1U);
   EXPECT_EQ(contents.num_skipped_images, 1U);
-  ASSERT_EQ(notices_.size(), 1U);
-  EXPECT_NE(notices_.front().find("2000.png"), std::string::npos);
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find("2000.png"), std::string::npos);
 }
 
 TEST_F(MakeBag, NamesFileAndLineOfABrokenImuRow) {
   writeImage("cam0/1000.png", 10);
   writeText("imu0.csv", "500,0,0,0,0,0,9.81\n600,0,0\n");
   try {
-    makeBag(folder_.string(), bag(), {});
+    makeBag(folder.string(), bag(), {});
     FAIL() << "a short row was accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("imu0.csv, line 2"), std::string::npos) << error.what();

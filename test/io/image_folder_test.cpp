@@ -17,21 +17,21 @@ namespace fs = std::filesystem;
 /// A folder that is removed with the test, and images of one grey value in it.
 class ImageFolder : public ::testing::Test {
  protected:
-  ImageFolder() : folder_(fs::temp_directory_path() / ("image_folder_test." + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
-    options_.notice = [this](const std::string& text) { notices_.push_back(text); };
+  ImageFolder() : folder(fs::temp_directory_path() / ("image_foldertest." + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
+    options.notice = [this](const std::string& text) { notices.push_back(text); };
   }
-  ~ImageFolder() override { fs::remove_all(folder_); }
+  ~ImageFolder() override { fs::remove_all(folder); }
 
   void write(const std::string& name, int value = 100, int type = CV_8UC1) {
-    const fs::path path = folder_ / name;
+    const fs::path path = folder / name;
     fs::create_directories(path.parent_path());
     cv::imwrite(path.string(), cv::Mat(6, 8, type, cv::Scalar::all(value)));
   }
 
   std::vector<std::int64_t> stamps(const std::string& topic) {
     std::vector<std::int64_t> stamps_ns;
-    const auto source = openImageFolder(folder_.string(), {topic}, options_).front().open();
+    const auto source = openImageFolder(folder.string(), {topic}, options).front().open();
     while (auto image = source()) {
       stamps_ns.push_back(image->stamp_ns);
     }
@@ -40,25 +40,25 @@ class ImageFolder : public ::testing::Test {
 
   std::string errorOf(const std::string& topic) {
     try {
-      openImageFolder(folder_.string(), {topic}, options_);
+      openImageFolder(folder.string(), {topic}, options);
     } catch (const InputError& error) {
       return error.what();
     }
     return "no error";
   }
 
-  fs::path folder_;
-  RecordingOptions options_;
-  std::vector<std::string> notices_;
+  fs::path folder;
+  RecordingOptions options;
+  std::vector<std::string> notices;
 };
 
 TEST_F(ImageFolder, HasATopicForEverySubfolderWithImagesInOrderOfCameras) {
   write("cam10/1.png");
   write("cam2/1.jpg");
   write("cam0/1.pgm");
-  fs::create_directories(folder_ / "notes");
-  std::ofstream(folder_ / "imu0.csv") << "1,0,0,0,0,0,0\n";
-  EXPECT_EQ(imageFolderTopics(folder_.string()),
+  fs::create_directories(folder / "notes");
+  std::ofstream(folder / "imu0.csv") << "1,0,0,0,0,0,0\n";
+  EXPECT_EQ(imageFolderTopics(folder.string()),
             (std::vector<std::string>{"/cam0/image_raw", "/cam2/image_raw", "/cam10/image_raw"}));
 }
 
@@ -72,14 +72,14 @@ TEST_F(ImageFolder, OrdersImagesByStampNotByName) {
 TEST_F(ImageFolder, UnderstandsTheNameOfACameraForItsTopic) {
   write("cam0/1.png");
   for (const char* name : {"cam0", "/cam0", "cam0/image_raw", "/cam0/image_raw"}) {
-    EXPECT_EQ(openImageFolder(folder_.string(), {name}, options_).front().topic, "/cam0/image_raw");
+    EXPECT_EQ(openImageFolder(folder.string(), {name}, options).front().topic, "/cam0/image_raw");
   }
 }
 
 TEST_F(ImageFolder, LoadsImagesAsEightBitGrey) {
   write("cam0/1.png", 100, CV_8UC3);
   write("cam0/2.png", 100 * 256, CV_16UC1);
-  const auto source = openImageFolder(folder_.string(), {"/cam0/image_raw"}, options_).front().open();
+  const auto source = openImageFolder(folder.string(), {"/cam0/image_raw"}, options).front().open();
   const cv::Mat from_color = source()->load();
   EXPECT_EQ(from_color.type(), CV_8UC1);
   EXPECT_EQ(from_color.size(), cv::Size(8, 6));
@@ -91,8 +91,8 @@ TEST_F(ImageFolder, TellsOnceHowSixteenBitImagesAreReduced) {
   write("cam0/1.png", 100, CV_16UC1);
   write("cam0/2.png", 100, CV_16UC1);
   stamps("/cam0/image_raw");
-  ASSERT_EQ(notices_.size(), 1U);
-  EXPECT_NE(notices_.front().find("16-bit"), std::string::npos);
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find("16-bit"), std::string::npos);
 }
 
 TEST_F(ImageFolder, LeavesOutFilesThatAreNotNamedByAStampAndSaysSo) {
@@ -100,8 +100,8 @@ TEST_F(ImageFolder, LeavesOutFilesThatAreNotNamedByAStampAndSaysSo) {
   write("cam0/left_2.png");
   write("cam0/99999999999999999999.png");
   EXPECT_EQ(stamps("/cam0/image_raw").size(), 1U);
-  ASSERT_EQ(notices_.size(), 1U);
-  EXPECT_NE(notices_.front().find("2 images"), std::string::npos) << notices_.front();
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find("2 images"), std::string::npos) << notices.front();
 }
 
 TEST_F(ImageFolder, NamesWhatIsMissing) {
@@ -114,8 +114,8 @@ TEST_F(ImageFolder, NamesWhatIsMissing) {
 TEST_F(ImageFolder, ReportsABrokenImageWhereItIsLoaded) {
   write("cam0/1.png");
   write("cam0/2.png");
-  fs::resize_file(folder_ / "cam0/1.png", 40);
-  const auto source = openImageFolder(folder_.string(), {"/cam0/image_raw"}, options_).front().open();
+  fs::resize_file(folder / "cam0/1.png", 40);
+  const auto source = openImageFolder(folder.string(), {"/cam0/image_raw"}, options).front().open();
   try {
     source()->load();
     FAIL() << "a truncated file was loaded";

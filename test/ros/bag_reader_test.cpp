@@ -37,40 +37,40 @@ class Selection : public ::testing::Test {
     for (const int time_ms : {400, 0, 100, 200, 300, 500}) {  // not stored in order: t0 is the smallest stamp
       messages.push_back(message(grayRamp(), "mono8", kStart + time_ms * kMs));
     }
-    store(bag_.path(), messages);
+    store(bag.path(), messages);
   }
-  BagFile bag_;
-  io::RecordingOptions options_;
+  BagFile bag;
+  io::RecordingOptions options;
 };
 
 TEST_F(Selection, OfAWindowIncludesBothEnds) {
-  options_.window = io::TimeWindow{0.1, 0.3};
-  EXPECT_EQ(readStamps(bag_.path(), options_), (std::vector<std::int64_t>{100, 200, 300}));
+  options.window = io::TimeWindow{0.1, 0.3};
+  EXPECT_EQ(readStamps(bag.path(), options), (std::vector<std::int64_t>{100, 200, 300}));
 }
 
 TEST_F(Selection, ByRateKeepsTheFirstImageAndThoseAPeriodAfterTheLastKept) {
-  options_.max_rate_hz = 4.0;
-  EXPECT_EQ(readStamps(bag_.path(), options_), (std::vector<std::int64_t>{0, 300}));
+  options.max_rate_hz = 4.0;
+  EXPECT_EQ(readStamps(bag.path(), options), (std::vector<std::int64_t>{0, 300}));
 }
 
 TEST_F(Selection, AtTheRateOfTheRecordingKeepsAll) {
-  options_.max_rate_hz = 10.0;
-  EXPECT_EQ(readStamps(bag_.path(), options_).size(), 6U);
+  options.max_rate_hz = 10.0;
+  EXPECT_EQ(readStamps(bag.path(), options).size(), 6U);
 }
 
 TEST_F(Selection, CountsInTheStream) {
-  options_.window = io::TimeWindow{0.1, 0.3};
-  EXPECT_EQ(openBag(bag_.path(), {kTopic}, options_).front().num_images, 3U);
+  options.window = io::TimeWindow{0.1, 0.3};
+  EXPECT_EQ(openBag(bag.path(), {kTopic}, options).front().num_images, 3U);
 }
 
 TEST_F(Selection, RefusesWhatSelectsNothing) {
-  options_.window = io::TimeWindow{0.3, 0.3};
-  EXPECT_NE(errorOf([&] { openBag(bag_.path(), {kTopic}, options_); }).find("empty"), std::string::npos);
-  options_.window = io::TimeWindow{7.0, 8.0};
-  EXPECT_NE(errorOf([&] { openBag(bag_.path(), {kTopic}, options_); }).find(kTopic), std::string::npos);
-  options_.window.reset();
-  options_.max_rate_hz = 0.0;
-  EXPECT_NE(errorOf([&] { openBag(bag_.path(), {kTopic}, options_); }).find("positive"), std::string::npos);
+  options.window = io::TimeWindow{0.3, 0.3};
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {kTopic}, options); }).find("empty"), std::string::npos);
+  options.window = io::TimeWindow{7.0, 8.0};
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {kTopic}, options); }).find(kTopic), std::string::npos);
+  options.window.reset();
+  options.max_rate_hz = 0.0;
+  EXPECT_NE(errorOf([&] { openBag(bag.path(), {kTopic}, options); }).find("positive"), std::string::npos);
 }
 
 TEST(BagReader, CanBeReadAgain) {

@@ -26,20 +26,13 @@ struct Arguments {
   bool export_corners = false;
 };
 
-/// Parses the words after the program's name as Python's argparse does for kalibr_calibrate_cameras: any order, unambiguous
-/// prefixes, `--flag=value`, lists that end at the next `--`, negative numbers as values, the last one of a flag given
-/// twice;
-/// `_` may stand for `-`; `--rig F` stands for the flags in F. A prefix that Kalibr's own flags make unambiguous stays so
-/// among ours. Throws UsageError that names the flag.
+/// Parses the words after the program's name as parseFlags does; `--rig F` stands for the flags in F. Throws UsageError that
+/// names the flag.
 Arguments parseArguments(const std::vector<std::string>& words);
 
 /// KALIBR_MANUAL_FOCAL_LENGTH_INIT as a hint in pixels; null stands for an unset variable. Values that are no focal length
 /// in pixels (users set it to 1 to be asked for one) are empty.
 std::optional<double> focalHint(const char* value);
-
-/// Kalibr's flags, and those of this program alone; without the leading `--`.
-std::vector<std::string> kalibrFlags();
-std::vector<std::string> ownFlags();
 
 /// Text of --help.
 std::string helpText();

@@ -43,6 +43,7 @@ void applyInit(const std::string& path, Inputs& inputs) {
 template <class WithTopic>
 std::vector<std::string> topicsOf(const std::vector<WithTopic>& cameras) {
   std::vector<std::string> topics;
+  topics.reserve(cameras.size());
   for (const WithTopic& camera : cameras) {
     topics.push_back(camera.topic);
   }
@@ -57,6 +58,10 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+InputError noSuchTopic(const std::string& path, const std::string& topic, const std::vector<pipeline::CameraCorners>& all) {
+  return InputError("corners file " + path + " has no topic " + topic + "; its topics: " + joined(topicsOf(all)));
+}
+
 /// The cameras of a corners file that the topics name, in their order; all where no topic is given.
 std::vector<pipeline::CameraCorners> openCorners(const std::string& path, const std::vector<std::string>& topics) {
   const std::vector<pipeline::CameraCorners> all = io::loadCorners(path);
@@ -64,7 +69,7 @@ std::vector<pipeline::CameraCorners> openCorners(const std::string& path, const 
   for (const std::string& topic : topics) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& camera) { return camera.topic == topic; });
     if (found == all.end()) {
-      throw InputError("corners file " + path + " has no topic " + topic + "; its topics: " + joined(topicsOf(all)));
+      throw noSuchTopic(path, topic, all);
     }
     cameras.push_back(*found);
   }
