@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "common/program.h"
+#include "tartan_calib/io/corners_csv.h"
 
 namespace {
 
@@ -18,8 +19,9 @@ constexpr const char* kHelp = R"(Compares two calibrations of the same cameras.
 Parameters make up for each other (the scale and the shape of a lens, above all), so what counts is where the two send the same
 ray: the difference of the projections over the image, with the rotation between the two camera frames removed.
 
-  --max-angle-deg A   look at rays to this angle from the axis (90)
-  -h, --help          this text
+  --max-angle-deg A      look at rays to this angle from the axis (90)
+  --corners F [F ...]    only where all these recordings (files of --export-corners) have corners
+  -h, --help             this text
 )";
 
 constexpr double kDefaultMaxAngle_deg = 90.0;
@@ -28,6 +30,7 @@ constexpr double kRadiansPerDegree = 0.017453292519943295;
 po::variables_map parse(int argc, char** argv) {
   po::options_description options;
   options.add_options()("help,h", "")("max-angle-deg", po::value<double>()->default_value(kDefaultMaxAngle_deg));
+  options.add_options()("corners", po::value<std::vector<std::string>>()->multitoken());
   options.add_options()("camchain", po::value<std::vector<std::string>>());
   po::positional_options_description files;
   files.add("camchain", -1);
@@ -51,8 +54,14 @@ int run(int argc, char** argv) {
   if (files.size() != 2) {
     throw UsageError("two camchain files are needed; see --help");
   }
-  const double max_angle_rad = values["max-angle-deg"].as<double>() * kRadiansPerDegree;
-  std::cout << comparisonText(io::loadCamchain(files[0]), io::loadCamchain(files[1]), max_angle_rad);
+  ComparisonRegion region;
+  region.max_angle_rad = values["max-angle-deg"].as<double>() * kRadiansPerDegree;
+  if (values.count("corners") > 0) {
+    for (const std::string& file : values["corners"].as<std::vector<std::string>>()) {
+      region.recordings.push_back(io::loadCorners(file));
+    }
+  }
+  std::cout << comparisonText(io::loadCamchain(files[0]), io::loadCamchain(files[1]), region);
   return kSuccess;
 }
 

@@ -81,6 +81,7 @@ void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target:
     yaml.add("min_tags", std::to_string(options.min_tags.value_or(pipeline::minTags(*grid))));
   }
   yaml.add("approx_sync_s", yamlFloat(static_cast<double>(options.approx_sync_ns) * kSecondsPerNanosecond));
+  yaml.add("max_rounds", std::to_string(options.max_rounds));
   yaml.open("detector");
   yaml.add("min_border_distance_px", yamlFloat(options.detector.min_border_distance_px));
   yaml.add("max_hamming", std::to_string(options.detector.max_hamming));

@@ -55,6 +55,16 @@ void addSolution(YamlWriter& yaml, const CalibrationResult& result) {
   yaml.close();
 }
 
+void addRounds(YamlWriter& yaml, const std::vector<pipeline::RoundSummary>& rounds) {
+  yaml.open("rounds");
+  for (const pipeline::RoundSummary& round : rounds) {
+    yaml.item("{round: " + std::to_string(round.round) + ", corners: " + std::to_string(round.corners) +
+              ", gained: " + std::to_string(round.gained) + ", lost: " + std::to_string(round.lost) +
+              ", rms_px: " + yamlFloat(round.rms_px) + ", model_change_px: " + yamlFloat(round.model_change_px) + "}");
+  }
+  yaml.close();
+}
+
 void addCounts(YamlWriter& yaml, const pipeline::CameraReport& report, const calibration::CornerCounts& corners) {
   const detection::DetectionCounts& tags = report.counts;
   yaml.open("images");
@@ -181,6 +191,7 @@ std::string calibrationText(const CalibrationResult& result, const pipeline::Cal
   addOptions(yaml, options, result.target);
   addTarget(yaml, result.target);
   addSolution(yaml, result);
+  addRounds(yaml, result.rounds);
   yaml.open("cameras");
   for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     addCamera(yaml, result, i);

@@ -7,7 +7,7 @@
 namespace tartan_calib::apps {
 namespace {
 
-constexpr double kMaxAngle_rad = 1.5;
+const ComparisonRegion kWide{1.5, {}};
 
 calibration::RigCamera fisheye(double focal_px) {
   calibration::RigCamera camera;
@@ -19,7 +19,7 @@ calibration::RigCamera fisheye(double focal_px) {
 
 TEST(CompareRigs, ARigIsNoWayFromItself) {
   const calibration::Rig rig{{fisheye(200.0), fisheye(210.0)}};
-  for (const CameraComparison& comparison : compareRigs(rig, rig, kMaxAngle_rad)) {
+  for (const CameraComparison& comparison : compareRigs(rig, rig, kWide)) {
     EXPECT_LT(comparison.max_px, 1e-9);
     EXPECT_LT(comparison.rotation_rad, 1e-12);
     EXPECT_EQ(comparison.translation_m, 0.0);
@@ -33,24 +33,48 @@ TEST(CompareRigs, AnotherPlaceOnTheRigIsToldInRadiansAndMetres) {
   twist.tail<3>() << 0.0, 2e-3, 0.0;
   moved.cameras[1].T_cam_rig = geometry::expRigid(twist);
   moved.cameras[1].T_cam_rig.translation.x() = 5e-3;
-  const auto comparisons = compareRigs(rig, moved, kMaxAngle_rad);
+  const auto comparisons = compareRigs(rig, moved, kWide);
   EXPECT_LT(comparisons[0].rotation_rad, 1e-12);
   EXPECT_NEAR(comparisons[1].rotation_rad, 2e-3, 1e-9);
   EXPECT_NEAR(comparisons[1].translation_m, 5e-3, 1e-12);
 }
 
 TEST(CompareRigs, ALongerFocalLengthShowsMostAtTheRim) {
-  const auto comparison = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, kMaxAngle_rad).front();
+  const auto comparison = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, kWide).front();
   EXPECT_GT(comparison.max_px, 1.5 * comparison.rms_px);
-  const auto narrow = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, 0.2).front();
+  const auto narrow = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, {0.2, {}}).front();
   EXPECT_LT(narrow.max_px, 0.3 * comparison.max_px);
 }
 
+/// One corner at each of these pixels.
+std::vector<pipeline::CameraCorners> recordingOf(const std::vector<Eigen::Vector2d>& pixels) {
+  pipeline::CameraCorners corners;
+  corners.images.emplace_back();
+  for (const Eigen::Vector2d& px : pixels) {
+    corners.images.back().corners.push_back({0, px, Eigen::Matrix2d::Identity(), true});
+  }
+  return {corners};
+}
+
+TEST(CompareRigs, OnlyPixelsNearWhichEveryRecordingHasCornersCount) {
+  const calibration::Rig a{{fisheye(200.0)}};
+  const calibration::Rig b{{fisheye(202.0)}};
+  const Eigen::Vector2d centre(325.0, 245.0);
+  const Eigen::Vector2d rim(20.0, 20.0);
+  const double everywhere_px = compareRigs(a, b, kWide).front().max_px;
+  const ComparisonRegion middle{1.5, {recordingOf({centre, rim}), recordingOf({centre})}};
+  EXPECT_LT(compareRigs(a, b, middle).front().max_px, 0.3 * everywhere_px);
+  std::vector<pipeline::CameraCorners> rejected = recordingOf({centre});
+  rejected[0].images[0].corners[0].used = false;
+  EXPECT_THROW(compareRigs(a, b, {1.5, {rejected}}), CalibrationError);
+}
+
 TEST(CompareRigs, OtherRigsAreRefused) {
-  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {}, kMaxAngle_rad), InputError);
+  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {}, kWide), InputError);
   calibration::Rig larger{{fisheye(200.0)}};
   larger.cameras[0].camera.width = 1000;
-  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, larger, kMaxAngle_rad), InputError);
+  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, larger, kWide), InputError);
+  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {{fisheye(200.0)}}, {1.5, {{}}}), InputError);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tartan_calib/io/camchain.h"
+#include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::apps {
 
@@ -15,11 +16,18 @@ struct CameraComparison {
   double translation_m = 0.0;  ///< likewise
 };
 
-/// Camera by camera, over the pixels of a within `max_angle_rad` of its axis. Throws InputError where the rigs or their
-/// images do not fit each other.
-std::vector<CameraComparison> compareRigs(const calibration::Rig& a, const calibration::Rig& b, double max_angle_rad);
+/// Which pixels of calibration a are compared.
+struct ComparisonRegion {
+  double max_angle_rad = 1.5707963267948966;  ///< from the axis
+  /// Where given, only around pixels near which every one of these recordings has a corner.
+  std::vector<std::vector<pipeline::CameraCorners>> recordings;
+};
+
+/// Camera by camera. Throws InputError where the rigs, their images or the recordings do not fit each other.
+std::vector<CameraComparison> compareRigs(const calibration::Rig& a, const calibration::Rig& b,
+                                          const ComparisonRegion& region);
 
 /// For people: parameters side by side where the models are the same, then the comparison.
-std::string comparisonText(const io::Camchain& a, const io::Camchain& b, double max_angle_rad);
+std::string comparisonText(const io::Camchain& a, const io::Camchain& b, const ComparisonRegion& region);
 
 }  // namespace tartan_calib::apps
