@@ -6,7 +6,7 @@
 namespace tartan_calib::calibration {
 namespace {
 
-/// A better centre must lower the cost to this share of the guess's.
+/// Of the guess's cost: at most this much is worth a second centre.
 constexpr double kClearlyBetter = 0.8;
 constexpr double kSmallestStep = 1e-3;  // of half the image's width
 
@@ -48,17 +48,15 @@ CentreFit refineAround(const std::vector<NormalView>& views, const CentreFit& ne
   return fit;
 }
 
-/// The best of a grid, without the guess.
-CentreFit bestOfGrid(const std::vector<NormalView>& views, const CentreFit& guess, double max_offset) {
-  constexpr int kHalfSteps = 2;
+/// The best of the guess and the 8 points around it.
+CentreFit bestOfGrid(const std::vector<NormalView>& views, const CentreFit& guess, double spacing) {
   CentreFit best = guess;
-  for (int row = -kHalfSteps; row <= kHalfSteps; ++row) {
-    for (int col = -kHalfSteps; col <= kHalfSteps; ++col) {
+  for (int row = -1; row <= 1; ++row) {
+    for (int col = -1; col <= 1; ++col) {
       if (row == 0 && col == 0) {
         continue;
       }
-      const Eigen::Vector2d offset(col * max_offset / kHalfSteps, row * max_offset / kHalfSteps);
-      const CentreFit fit = searchAround(views, guess.centre + offset);
+      const CentreFit fit = searchAround(views, guess.centre + spacing * Eigen::Vector2d(col, row));
       if (fit.cost < best.cost) {
         best = fit;
       }
@@ -67,13 +65,17 @@ CentreFit bestOfGrid(const std::vector<NormalView>& views, const CentreFit& gues
   return best;
 }
 
-/// Pattern search: steps along the axes, halved where none helps.
-CentreFit descend(const std::vector<NormalView>& views, CentreFit best, double first_step) {
-  for (double step = first_step; step > kSmallestStep;) {
+/// Pattern search: steps along the axes, halved where none helps, within `max_offset` of the guess.
+CentreFit descend(const std::vector<NormalView>& views, CentreFit best, const Eigen::Vector2d& guess, double max_offset) {
+  for (double step = 0.25 * max_offset; step > kSmallestStep;) {
     CentreFit better = best;
     for (const Eigen::Vector2d& direction :
          {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)}) {
-      const CentreFit fit = refineAround(views, best, best.centre + step * direction);
+      const Eigen::Vector2d centre = best.centre + step * direction;
+      if ((centre - guess).cwiseAbs().maxCoeff() > max_offset) {
+        continue;
+      }
+      const CentreFit fit = refineAround(views, best, centre);
       if (fit.cost < better.cost) {
         better = fit;
       }
@@ -89,10 +91,14 @@ CentreFit descend(const std::vector<NormalView>& views, CentreFit best, double f
 
 }  // namespace
 
-Eigen::Vector2d findDistortionCentre(const std::vector<NormalView>& views, const Eigen::Vector2d& guess, double max_offset) {
+std::vector<Eigen::Vector2d> findDistortionCentres(const std::vector<NormalView>& views, const Eigen::Vector2d& guess,
+                                                   double max_offset) {
   const CentreFit start = searchAround(views, guess);
-  const CentreFit best = descend(views, bestOfGrid(views, start, max_offset), 0.25 * max_offset);
-  return best.cost < kClearlyBetter * start.cost ? best.centre : guess;
+  const CentreFit best = descend(views, bestOfGrid(views, start, 2.0 / 3.0 * max_offset), guess, max_offset);
+  if (best.cost < kClearlyBetter * start.cost) {
+    return {best.centre, guess};
+  }
+  return {guess};
 }
 
 }  // namespace tartan_calib::calibration

@@ -26,6 +26,7 @@ constexpr std::size_t kMaxSearchViews = 40;  ///< more do not make the search sa
 constexpr std::size_t kMaxSolveViews = 60;
 /// A corner this close to its prediction is explained, as a share of the image's width.
 constexpr double kExplained = 2.5e-3;
+constexpr double kMinExplained_px = 2.0;
 /// Share of explained corners at which no other lens is tried: a quarter may be wrong.
 constexpr double kConvincing = 0.7;
 constexpr double kFailed = 0.25;
@@ -54,22 +55,53 @@ std::size_t countCorners(const std::vector<CameraView>& views) {
   return count;
 }
 
+/// A camera with a pose for each view that it explains.
+struct PosedCamera {
+  camera::Camera camera;
+  Poses poses;
+};
+
+/// Intrinsics and existing poses by robust bundle adjustment.
+PosedCamera solveCamera(const PosedCamera& start, const std::vector<Eigen::Vector3d>& target_points,
+                        const std::vector<CameraView>& views) {
+  Problem problem;
+  problem.target_points = target_points;
+  problem.rig.cameras = {{start.camera, Rigid3()}};
+  std::vector<std::size_t> posed;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (start.poses[v]) {
+      CameraView view = views[v];
+      view.camera_index = 0;
+      problem.views.push_back({view.stamp_ns, {view}});
+      problem.T_rig_target.push_back(*start.poses[v]);
+      posed.push_back(v);
+    }
+  }
+  const Solution solution = solve(problem, SolveOptions());
+  PosedCamera solved{solution.rig.cameras.front().camera, start.poses};
+  for (std::size_t i = 0; i < posed.size(); ++i) {
+    solved.poses[posed[i]] = solution.T_rig_target[i];
+  }
+  return solved;
+}
+
 /// How well a camera explains corners, wrong ones among them.
 struct Explanation {
   double share = 0.0;                                     ///< of all corners that are explained
   double cost = std::numeric_limits<double>::infinity();  ///< mean of Cauchy's loss
 };
 
-Explanation explain(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
-                    const std::vector<CameraView>& views, const Poses& poses) {
+Explanation explain(const PosedCamera& posed, const std::vector<Eigen::Vector3d>& target_points,
+                    const std::vector<CameraView>& views) {
   constexpr double kLost = 100.0;  // squared error of a corner without a prediction, in squared limits
-  const double limit_px = kExplained * camera.width;
+  const double limit_px = std::max(kExplained * posed.camera.width, kMinExplained_px);
   double num_explained = 0.0;
   double cost = 0.0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     for (const observation::Corner& corner : views[v].corners) {
       const Eigen::Vector3d& p_target = target_points[static_cast<std::size_t>(corner.corner_id)];
-      const auto px = poses[v] ? camera::project(camera.model, *poses[v] * p_target) : std::nullopt;
+      const std::optional<Rigid3>& T = posed.poses[v];
+      const auto px = T ? camera::project(posed.camera.model, *T * p_target) : std::nullopt;
       const double ratio2 = px ? (*px - corner.px).squaredNorm() / (limit_px * limit_px) : kLost;
       num_explained += ratio2 < 1.0 ? 1.0 : 0.0;
       cost += std::log1p(ratio2);
@@ -79,40 +111,26 @@ Explanation explain(const camera::Camera& camera, const std::vector<Eigen::Vecto
   return {num_explained / num_corners, cost / num_corners};
 }
 
-/// All intrinsics and the poses that exist, by robust bundle adjustment.
-camera::Camera solveCamera(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
-                           const std::vector<CameraView>& views, const Poses& poses) {
-  Problem problem;
-  problem.target_points = target_points;
-  problem.rig.cameras = {{camera, Rigid3()}};
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    if (poses[v]) {
-      CameraView view = views[v];
-      view.camera_index = 0;
-      problem.views.push_back({view.stamp_ns, {view}});
-      problem.T_rig_target.push_back(*poses[v]);
-    }
-  }
-  return solve(problem, SolveOptions()).rig.cameras.front().camera;
-}
-
+/// A solved camera and how well it does.
 struct Candidate {
   camera::Camera camera;
   Explanation explanation;
 };
 
-/// Solves for the camera; once more where that brings back views without a pose.
+/// Solves for the camera, again where that brings back views without a pose.
 Candidate tryCamera(const camera::Camera& start, const std::vector<Eigen::Vector3d>& target_points,
                     const std::vector<CameraView>& views) {
-  Candidate candidate{start, {}};
-  Poses poses = estimatePoses(candidate.camera, target_points, views);
-  for (std::size_t num_solved = 0; countPoses(poses) > num_solved;) {
-    num_solved = countPoses(poses);
-    candidate.camera = solveCamera(candidate.camera, target_points, views, poses);
-    poses = estimatePoses(candidate.camera, target_points, views);
+  PosedCamera posed{start, estimatePoses(start, target_points, views)};
+  for (std::size_t num_solved = 0; countPoses(posed.poses) > num_solved;) {
+    num_solved = countPoses(posed.poses);
+    posed = solveCamera(posed, target_points, views);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (!posed.poses[v]) {
+        posed.poses[v] = estimatePose(posed.camera, target_points, views[v].corners);
+      }
+    }
   }
-  candidate.explanation = explain(candidate.camera, target_points, views, poses);
-  return candidate;
+  return {posed.camera, explain(posed, target_points, views)};
 }
 
 /// The best camera of the asked model for a lens.
@@ -141,9 +159,11 @@ std::string degrees(double angle_rad) { return std::to_string(std::lround(angle_
 }
 
 [[noreturn]] void throwUnexplained(const CameraSpec& spec, const std::vector<CameraView>& views, double share) {
-  throw CalibrationError("no " + spec.model_name + " lens explains the corners: at best " + percent(share) + " of " +
-                         std::to_string(countCorners(views)) + " corners in " + std::to_string(views.size()) +
-                         " views; check the target's sizes and whether the model fits the lens");
+  throw CalibrationError(
+      "no " + spec.model_name + " lens explains the corners: at best " + percent(share) + " of " +
+      std::to_string(countCorners(views)) + " corners in " + std::to_string(views.size()) +
+      " views; check whether the model can represent the lens, the target's sizes, and that the board was "
+      "tilted against the image");
 }
 
 /// Views from which a lens can be searched.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "distortion_centre.h"
 #include "radial_pose.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxCentreViews = 12;
 constexpr double kMaxCentreOffset = 0.2;  ///< of the distortion centre from the image centre, in half widths
-constexpr std::size_t kMaxGuesses = 6;
+constexpr std::size_t kMaxGuesses = 6;    ///< per centre
 
 /// Image and board in the units of the search.
 struct Units {
@@ -84,21 +85,24 @@ std::vector<LensGuess> searchLens(const ImageInfo& image, const std::vector<Eige
   for (const observation::CameraView& view : views) {
     normal_views.push_back(normalView(units, target_points, view));
   }
-  const Eigen::Vector2d centre =
-      findDistortionCentre(spread(normal_views, kMaxCentreViews), Eigen::Vector2d::Zero(), kMaxCentreOffset);
-  const std::vector<ProfileView> profile_views = profileViews(normal_views, centre);
-  if (profile_views.empty()) {
-    return {};
-  }
   std::optional<double> focal_hint;
   if (image.focal_hint_px) {
     focal_hint = *image.focal_hint_px / units.image_px;
   }
-  std::vector<LensGuess> guesses;
-  for (const ScoredProfile& scored : searchProfiles(profile_views, focal_hint, kMaxGuesses)) {
-    guesses.push_back(lensGuess(scored.profile, centre, maxRadius(profile_views), units));
+  std::vector<std::pair<double, LensGuess>> guesses;
+  for (const Eigen::Vector2d& centre :
+       findDistortionCentres(spread(normal_views, kMaxCentreViews), Eigen::Vector2d::Zero(), kMaxCentreOffset)) {
+    const std::vector<ProfileView> profile_views = profileViews(normal_views, centre);
+    for (const ScoredProfile& scored : searchProfiles(profile_views, focal_hint, kMaxGuesses)) {
+      guesses.emplace_back(scored.score, lensGuess(scored.profile, centre, maxRadius(profile_views), units));
+    }
   }
-  return guesses;
+  std::stable_sort(guesses.begin(), guesses.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<LensGuess> result;
+  for (const auto& [score, guess] : guesses) {
+    result.push_back(guess);
+  }
+  return result;
 }
 
 }  // namespace tartan_calib::calibration

@@ -161,8 +161,9 @@ geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sig
     J << J_px_p, -J_px_p * geometry::hat(p_cam);
     const Eigen::Vector2d residual_px = s.px - px;
     const double weight = cauchyWeight(residual_px.norm(), scale_px);
-    JtJ += weight * J.transpose() * J;
-    Jtr += weight * J.transpose() * residual_px;
+    const Eigen::Matrix<double, 6, 2> weighted = weight * J.transpose();
+    JtJ.noalias() += weighted.lazyProduct(J);
+    Jtr.noalias() += weighted.lazyProduct(residual_px);
   }
   JtJ.diagonal() *= 1.0 + damping;
   return JtJ.ldlt().solve(Jtr);
@@ -171,7 +172,7 @@ geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sig
 template <typename Model>
 Rigid3 refinePose(const Model& model, const std::vector<Sighting>& sightings, Rigid3 T_cam_target, double scale_px) {
   constexpr int kMaxSteps = 20;
-  constexpr double kConverged = 1e-9;  // rad, and share of the distance
+  constexpr double kConverged = 1e-7;  // rad, and share of the distance: far below a hundredth of a pixel
   constexpr double kMaxDamping = 1e6;
   double damping = 1e-4;
   double cost = robustCost(model, sightings, T_cam_target, scale_px);
@@ -228,6 +229,14 @@ Rigid3 mirroredPose(const Rigid3& T_cam_target, const Eigen::Vector3d& centre_ta
   return Rigid3(R, centre_cam - R * centre_target);
 }
 
+Eigen::Vector3d centreOf(const std::vector<Sighting>& sightings) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Sighting& s : sightings) {
+    sum += s.p_target;
+  }
+  return sum / static_cast<double>(sightings.size());
+}
+
 template <typename Model>
 std::optional<Rigid3> estimate(const Model& model, const std::vector<Sighting>& sightings, double diagonal_px) {
   const std::optional<Rigid3> start = searchPose(sightings, kGoodStart * diagonal_px);
@@ -235,15 +244,11 @@ std::optional<Rigid3> estimate(const Model& model, const std::vector<Sighting>& 
     return std::nullopt;
   }
   ScoredPose best = polishPose(model, sightings, *start);
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const Sighting& s : sightings) {
-    centre += s.p_target / static_cast<double>(sightings.size());
-  }
-  const ScoredPose other = polishPose(model, sightings, mirroredPose(best.T_cam_target, centre));
-  const double scale_px = lossScale(std::min(best.median_px, other.median_px));
-  if (robustCost(model, sightings, other.T_cam_target, scale_px) <
-      robustCost(model, sightings, best.T_cam_target, scale_px)) {
-    best = other;
+  // The mirrored pose is worth polishing only where it does better under the same loss.
+  const double scale_px = lossScale(best.median_px);
+  const Rigid3 mirrored = refinePose(model, sightings, mirroredPose(best.T_cam_target, centreOf(sightings)), scale_px);
+  if (robustCost(model, sightings, mirrored, scale_px) < robustCost(model, sightings, best.T_cam_target, scale_px)) {
+    best = polishPose(model, sightings, mirrored);
   }
   if (!(best.median_px < kExplained * diagonal_px)) {
     return std::nullopt;

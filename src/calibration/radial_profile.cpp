@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "robust.h"
+#include "spread.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -18,6 +19,9 @@ constexpr double kMaxError = 0.1;
 /// Board points closer to the axis than this (in board sizes) say nothing about the profile.
 constexpr double kMinDistance = 1e-3;
 
+/// Corners of a view that take part: all views together have more than enough.
+constexpr std::size_t kMaxSamples = 64;
+
 using Samples = std::vector<RadialSample>;
 
 /// A view under the better of its two rotations.
@@ -26,6 +30,19 @@ struct Explanation {
   double t_z = 0.0;  ///< the board's distance along the axis
   double error = kInfinity;
 };
+
+/// Between the sample's radius and the one where the profile sees its board point, to first order in the angle.
+double radialErrorOf(const RadialProfile& profile, const RadialSample& s, double depth) {
+  const double psi = profile.psi(s.r);
+  const double dot = s.r * s.distance + psi * depth;
+  if (dot <= 0.0) {
+    return kInfinity;
+  }
+  const double cross = s.distance * psi - s.r * depth;
+  const double image_norm2 = s.r * s.r + psi * psi;
+  const double sine = cross / std::sqrt(image_norm2 * (s.distance * s.distance + depth * depth));
+  return std::abs(sine) * image_norm2 / profile.growth(s.r);
+}
 
 /// The distance along the axis with the smallest sum of absolute radial errors, and their median.
 Explanation explain(const RadialProfile& profile, const Samples& samples) {
@@ -40,9 +57,7 @@ Explanation explain(const RadialProfile& profile, const Samples& samples) {
   result.t_z = weightedMedian(distances);
   std::vector<double> errors;
   for (const RadialSample& s : samples) {
-    const double psi = profile.psi(s.r);
-    const double difference_rad = std::atan2(s.distance, s.depth + result.t_z) - std::atan2(s.r, psi);
-    errors.push_back(std::abs(difference_rad) * (s.r * s.r + psi * psi) / profile.growth(s.r));
+    errors.push_back(radialErrorOf(profile, s, s.depth + result.t_z));
   }
   result.error = median(errors);
   return result;
@@ -104,6 +119,12 @@ class ProfileEquations {
 
 ScoredProfile scored(const RadialProfile& profile, const std::vector<ProfileView>& views, double max_radius) {
   return {profile, isMonotone(profile, max_radius) ? meanCapped(explainAll(profile, views)) : kInfinity};
+}
+
+/// Starts that were refined to the same minimum.
+bool isSameLens(const ScoredProfile& a, const ScoredProfile& b) {
+  constexpr double kSame = 0.03;
+  return std::abs(a.profile.coefficients(0) - b.profile.coefficients(0)) < kSame * a.profile.coefficients(0);
 }
 
 /// Refits to all views that agree, as long as that helps.
@@ -174,14 +195,15 @@ bool isMonotone(const RadialProfile& profile, double max_radius) {
 
 std::optional<ProfileView> profileView(const NormalView& view, const Eigen::Vector2d& centre, const RadialHomography& H) {
   std::vector<double> errors;
-  for (const NormalCorner& corner : view) {
+  const NormalView corners = spread(view, kMaxSamples);
+  for (const NormalCorner& corner : corners) {
     errors.push_back(radialError(H, centre, corner));
   }
   constexpr double kMinLimit = 5e-3;
   const double limit = std::max(4.0 * median(errors), kMinLimit);
   const std::array<RadialPose, 2> poses = completeRotation(H);
   ProfileView result;
-  for (const NormalCorner& corner : view) {
+  for (const NormalCorner& corner : corners) {
     const Eigen::Vector2d x = corner.image - centre;
     if (radialError(H, centre, corner) > limit || x.dot(H * corner.board.homogeneous()) <= 0.0) {
       continue;
@@ -192,7 +214,7 @@ std::optional<ProfileView> profileView(const NormalView& view, const Eigen::Vect
       result.samples[i].push_back({x.norm(), std::max(distance, kMinDistance), rotated.z()});
     }
   }
-  if (2 * result.samples[0].size() < view.size() || result.samples[0].empty()) {
+  if (2 * result.samples[0].size() < corners.size() || result.samples[0].empty()) {
     return std::nullopt;
   }
   return result;
@@ -210,6 +232,9 @@ double maxRadius(const std::vector<ProfileView>& views) {
 
 std::vector<ScoredProfile> searchProfiles(const std::vector<ProfileView>& views, std::optional<double> focal_hint,
                                           std::size_t max_profiles) {
+  if (views.empty()) {
+    return {};
+  }
   const double max_radius = maxRadius(views);
   std::vector<RadialProfile> candidates;
   for (const ProfileView& view : views) {
@@ -239,6 +264,8 @@ std::vector<ScoredProfile> searchProfiles(const std::vector<ProfileView>& views,
     profile = refine(profile, views, max_radius);
   }
   std::stable_sort(profiles.begin(), profiles.end(), isBetter);
+  const auto last = std::unique(profiles.begin(), profiles.end(), isSameLens);
+  profiles.erase(last, profiles.end());
   return profiles;
 }
 
