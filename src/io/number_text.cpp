@@ -44,10 +44,10 @@ Decimal shortestDecimal(double magnitude) {
 
 std::string fixedLayout(const Decimal& decimal) {
   if (decimal.exponent < 0) {
-    return "0." + std::string(static_cast<std::size_t>(-decimal.exponent - 1), '0') + decimal.digits;
+    return "0." + std::string(static_cast<std::size_t>(-decimal.exponent) - 1, '0') + decimal.digits;
   }
   std::string digits = decimal.digits;
-  const auto integer_digits = static_cast<std::size_t>(decimal.exponent + 1);
+  const std::size_t integer_digits = static_cast<std::size_t>(decimal.exponent) + 1;
   if (digits.size() <= integer_digits) {
     digits.append(integer_digits - digits.size(), '0');
     return digits + ".0";

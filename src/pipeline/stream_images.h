@@ -12,7 +12,7 @@
 namespace tartan_calib::pipeline {
 
 /// Images in work at a time per thread: one being worked on and one that waits, so that no thread runs dry.
-constexpr int kImagesPerThread = 2;
+constexpr std::size_t kImagesPerThread = 2;
 
 /// Runs `work(StampedImage) -> Result` over all images of a stream on `num_threads` threads (0: all cores) and hands the
 /// results to `collect(Result)` in the order of the images. Only a few images exist at a time.
@@ -22,7 +22,7 @@ void streamImages(const CameraStream& stream, int num_threads, const Listener& l
   if (num_threads <= 0) {
     num_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }
-  const auto max_pending = static_cast<std::size_t>(kImagesPerThread * num_threads);
+  const auto max_pending = kImagesPerThread * static_cast<std::size_t>(num_threads);
   const ImageSource next_image = stream.open();
   progress.done = 0;
   progress.total = stream.num_images;
