@@ -52,7 +52,7 @@ core_packages=(cmake g++ make libapriltag-dev libboost-program-options-dev libei
   libyaml-cpp-dev)
 ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-roslaunch
   ros-environment rosbash)
-test_packages=(libgtest-dev python3-yaml)
+test_packages=(libceres-dev libgtest-dev python3-yaml)
 # shellcheck disable=SC2034
 all_packages=("${core_packages[@]}" "${ros_packages[@]}" "${test_packages[@]}")
 
