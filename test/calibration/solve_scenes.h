@@ -13,6 +13,8 @@ using test_support::Random;
 using test_support::Scene;
 using test_support::SceneOptions;
 
+inline constexpr double kNoise_px = 0.2;
+
 inline geometry::Rigid3 randomMotion(Random& random, double sigma_m, double sigma_rad) {
   geometry::Vector6d xi;
   for (int i = 0; i < 6; ++i) {
@@ -98,5 +100,22 @@ inline std::string testName(std::string model) {
   model[model.find('-')] = '_';
   return model;
 }
+
+inline Scene sceneOf(const std::vector<std::string>& models, int num_views, unsigned seed = 7) {
+  Random random(seed);
+  SceneOptions options;
+  options.num_views = num_views;
+  options.seed = seed;
+  return test_support::simulateScene(rowOfCameras(models, random), options);
+}
+
+/// Estimate minus truth in units of the predicted stdev.
+inline Eigen::ArrayXd normalisedErrors(const Solution& solution, const Rig& truth) {
+  const Eigen::VectorXd error = errorVector(solution.rig, truth);
+  return error.array() / solution.covariance.diagonal().head(error.size()).array().sqrt();
+}
+
+/// Noise alone exceeds this once in 1.7 million parameters.
+inline constexpr double kMaxNormalisedError = 5.0;
 
 }  // namespace tartan_calib::calibration
