@@ -199,7 +199,7 @@ Rigid3 refinePose(const Model& model, const std::vector<Sighting>& sightings, Ri
 
 /// Width of Cauchy's loss for corners of which half are within `median_px`.
 double lossScale(double median_px) {
-  constexpr double kMin_px = 0.05;  // far below what a detector reaches
+  constexpr double kMin_px = 0.5;  // corners this good are all right
   constexpr double kMax_px = 50.0;
   return std::min(std::max(2.0 * median_px, kMin_px), kMax_px);
 }
