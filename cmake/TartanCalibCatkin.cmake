@@ -98,13 +98,14 @@ function(tartan_calib_alias program name)
 endfunction()
 
 # tartan_calib_install(): headers, libraries, launch and config files. Programs install themselves.
+# From the repository itself: CMake installs a link, such as scripts/build makes to these folders, as a link.
 function(tartan_calib_install)
   foreach(library ${TARTAN_CALIB_EXPORTED})
     install(TARGETS ${library}
       ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION} LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
   endforeach()
-  install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
+  install(DIRECTORY ${TARTAN_CALIB_SOURCE_DIR}/include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
   foreach(folder launch config)
-    install(DIRECTORY ${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
+    install(DIRECTORY ${TARTAN_CALIB_SOURCE_DIR}/${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
   endforeach()
 endfunction()
