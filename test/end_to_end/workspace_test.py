@@ -81,7 +81,7 @@ class InstallSpace(unittest.TestCase):
         self.assertEqual(finished.returncode, 0, finished.stdout + finished.stderr)
         setup = DEVEL.parent / "install/setup.bash"
         for command in ("rosrun tartan_calib calibrate_cameras --help", "rosrun tartan_calib kalibr_calibrate_cameras --help",
-                        "roslaunch --files tartan_calib calibrate.launch"):
+                        "roslaunch --files tartan_calib calibrate.launch bag:=a.bag"):
             finished = run_in_workspace(command, setup, env=self.bare_environment())
             self.assertEqual(finished.returncode, 0, command + finished.stderr)
         prefix = run_in_workspace("rospack find tartan_calib", setup, env=self.bare_environment()).stdout.strip()
