@@ -13,9 +13,7 @@ namespace {
 }
 
 Measurement measurementOf(const observation::Corner& corner) {
-  // inverse(L L') = inverse(L)' inverse(L).
-  const Eigen::LLT<Eigen::Matrix2d> factor(corner.cov_px2);
-  return {corner.corner_id, corner.px, factor.matrixL().solve(Eigen::Matrix2d::Identity()), CornerState::kUsed};
+  return {corner.corner_id, corner.px, corner.cov_px2, sqrtInformation(corner.cov_px2), CornerState::kUsed};
 }
 
 void check(const Problem& problem, const observation::CameraView& image, std::size_t view) {
@@ -38,6 +36,11 @@ void check(const Problem& problem, const observation::CameraView& image, std::si
 }
 
 }  // namespace
+
+Eigen::Matrix2d sqrtInformation(const Eigen::Matrix2d& cov) {
+  // inverse(L L') = inverse(L)' inverse(L).
+  return Eigen::LLT<Eigen::Matrix2d>(cov).matrixL().solve(Eigen::Matrix2d::Identity());
+}
 
 std::vector<ViewMeasurements> measurementsOf(const Problem& problem) {
   if (problem.T_rig_target.size() != problem.views.size()) {

@@ -13,6 +13,7 @@ enum class CornerState { kUsed, kOutlier, kUnprojectable, kUnsupported };
 struct Measurement {
   int corner_id = -1;
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d cov_px2 = Eigen::Matrix2d::Identity();  ///< as detected
   /// W with W'W = inverse covariance: |W e|^2 is the squared whitened residual.
   Eigen::Matrix2d sqrt_information = Eigen::Matrix2d::Identity();
   CornerState state = CornerState::kUsed;
@@ -25,6 +26,9 @@ struct CameraMeasurements {
 };
 
 using ViewMeasurements = std::vector<CameraMeasurements>;
+
+/// W with W'W = inverse of `cov`.
+Eigen::Matrix2d sqrtInformation(const Eigen::Matrix2d& cov);
 
 /// Throws InputError where the problem contradicts itself (indices out of range, numbers that are not finite, covariances
 /// that are not positive definite), CalibrationError where there are no corners at all.

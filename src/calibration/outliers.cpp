@@ -9,8 +9,12 @@ namespace {
 constexpr double kMadToSigma = 1.4826;  ///< of a normal distribution
 constexpr double kMinSigma = 1e-3;      ///< [px]; no detector is better, and rounding is no outlier
 constexpr double kGrossSigma = 10.0;    ///< robust stdevs: beyond any misfit of a model, short of a wrong corner
-constexpr int kMinPoseCorners = 4;      ///< of a view: fewer leave its pose undetermined or ambiguous
-constexpr int kMaxSigmaPasses = 20;     ///< rejection lowers sigma, which rejects more; settles within a few passes
+/// A lens is off its formula by so much even where corners are seen ten times better. Judged by the corners' noise alone,
+/// the outer ones, where a model that is too simple errs most, would all be outliers, and the model worse for it.
+constexpr double kUsualMisfit_px = 0.1;
+constexpr double kNeverOutlier_px = 0.3;  ///< no wrong corner lies this close
+constexpr int kMinPoseCorners = 4;        ///< of a view: fewer leave its pose undetermined or ambiguous
+constexpr int kMaxSigmaPasses = 20;       ///< rejection lowers sigma, which rejects more; settles within a few passes
 
 /// A corner that has an image, with its error.
 struct Candidate {
@@ -64,7 +68,8 @@ void rejectGross(const std::vector<Candidate>& candidates) {
     magnitudes.push_back(std::abs(candidate.error_px.x()));
     magnitudes.push_back(std::abs(candidate.error_px.y()));
   }
-  rejectBeyond(Eigen::Array2d::Constant(kGrossSigma * robustSigma(magnitudes)), candidates);
+  const double sigma_px = std::max(robustSigma(magnitudes), kUsualMisfit_px);
+  rejectBeyond(Eigen::Array2d::Constant(kGrossSigma * sigma_px), candidates);
 }
 
 /// Population stdev per axis of the used corners' errors.
@@ -86,7 +91,7 @@ Eigen::Array2d stdevOfUsed(const std::vector<Candidate>& candidates) {
 /// Kalibr's rule, which it applies after every view it adds: here until it rejects no more.
 void rejectBySigma(double outlier_sigma, const std::vector<Candidate>& candidates) {
   for (int pass = 0; pass < kMaxSigmaPasses; ++pass) {
-    if (!rejectBeyond(outlier_sigma * stdevOfUsed(candidates), candidates)) {
+    if (!rejectBeyond((outlier_sigma * stdevOfUsed(candidates)).max(kNeverOutlier_px), candidates)) {
       return;
     }
   }
@@ -136,7 +141,9 @@ std::vector<int> viewsPerCamera(const BatchProblem& batch) {
 }  // namespace
 
 std::vector<double> robustSigmas(const BatchProblem& batch) {
-  std::vector<std::vector<double>> magnitudes(batch.state().rig.cameras.size());
+  const std::size_t num_cameras = batch.state().rig.cameras.size();
+  std::vector<std::vector<double>> magnitudes(num_cameras);
+  std::vector<std::vector<double>> inverse_sigmas(num_cameras);  // of the corners as detected, 1/px
   for (std::size_t view = 0; view < batch.views().size(); ++view) {
     for (const CameraMeasurements& image : batch.views()[view]) {
       std::vector<double>& list = magnitudes[static_cast<std::size_t>(image.camera_index)];
@@ -146,24 +153,27 @@ std::vector<double> robustSigmas(const BatchProblem& batch) {
           const Eigen::Vector2d whitened = image.corners[i].sqrt_information * *errors_px[i];
           list.push_back(std::abs(whitened.x()));
           list.push_back(std::abs(whitened.y()));
+          inverse_sigmas[static_cast<std::size_t>(image.camera_index)].push_back(
+              std::sqrt(image.corners[i].sqrt_information.determinant()));
         }
       }
     }
   }
   std::vector<double> sigmas;
-  for (std::vector<double>& list : magnitudes) {
-    sigmas.push_back(robustSigma(list));
+  for (std::size_t i = 0; i < num_cameras; ++i) {
+    const double misfit = inverse_sigmas[i].empty() ? 0.0 : kUsualMisfit_px * medianOf(inverse_sigmas[i]);
+    sigmas.push_back(std::max(robustSigma(magnitudes[i]), misfit));
   }
   return sigmas;
 }
 
-bool selectCorners(const SolveOptions& options, BatchProblem& batch) {
+bool selectCorners(const SolveOptions& options, Selection selection, BatchProblem& batch) {
   const std::vector<CornerState> before = cornerStates(batch);
   const std::vector<int> num_views = viewsPerCamera(batch);
   const std::vector<std::vector<Candidate>> candidates = projectableCorners(batch);
   for (std::size_t i = 0; i < candidates.size() && options.remove_outliers; ++i) {
     rejectGross(candidates[i]);
-    if (num_views[i] > options.min_views_outlier) {
+    if (selection == Selection::kAllRules && num_views[i] > options.min_views_outlier) {
       rejectBySigma(options.outlier_sigma, candidates[i]);
     }
   }

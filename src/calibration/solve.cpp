@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "batch_problem.h"
+#include "model_error.h"
 #include "outliers.h"
 #include "rig_covariance.h"
 #include "tartan_calib/error.h"
@@ -107,14 +108,18 @@ class BatchSolve {
                           1.0};
     batch_.setLosses(std::vector<RobustLoss>(problem_.rig.cameras.size(), loss));
     const int num_selections = options_.final_filtering ? kMaxSelections : 1;
-    for (int i = 0; i < num_selections && !isCancelled(); ++i) {
-      if (!selectCorners(options_, batch_) && i > 0) {
+    for (int i = 0; i <= num_selections && !isCancelled(); ++i) {
+      // The annealed model follows the bulk of the corners; the sigma rule waits for one that follows all but gross errors.
+      const Selection selection = i == 0 ? Selection::kGrossErrors : Selection::kAllRules;
+      if (!selectCorners(options_, selection, batch_) && i > 0) {
         return;
       }
       const int num_corners = usedCorners(batch_).num_corners;
       if (num_corners == 0) {
         throw CalibrationError("no corner fits the start of the solve; the start values are too far off");
       }
+      model_errors_px_ = modelErrors(batch_);
+      setModelErrors(model_errors_px_, batch_);
       // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
       minimize(numAnnealingStages() + i, kFinalAccuracy * kFinalAccuracy / (2.0 * num_corners));
     }
@@ -130,7 +135,7 @@ class BatchSolve {
     options.absolute_tolerance = 0.5 * num_residuals * kExactResidual_px * kExactResidual_px;
     if (options_.progress) {
       options.progress = [&, stage, num_residuals](int iteration, double cost) {
-        const int num_stages = numAnnealingStages() + (options_.final_filtering ? kMaxSelections : 1);
+        const int num_stages = numAnnealingStages() + 1 + (options_.final_filtering ? kMaxSelections : 1);
         return options_.progress({stage, num_stages, iteration, std::sqrt(4.0 * cost / num_residuals)});
       };
     }
@@ -161,6 +166,7 @@ class BatchSolve {
     solution.rig = batch_.state().rig;
     solution.T_rig_target = batch_.state().T_rig_target;
     solution.board_warp_m = batch_.state().board_warp_m;
+    solution.model_errors_px = model_errors_px_;
     copyCorners(solution);
     if (!isCancelled()) {
       estimateUncertainty(solution);
@@ -229,6 +235,7 @@ class BatchSolve {
   const Problem& problem_;
   const SolveOptions& options_;
   BatchProblem batch_;
+  std::vector<double> model_errors_px_;
   SolveStatus status_ = SolveStatus::kStalled;
   int iterations_ = 0;
 };

@@ -96,7 +96,8 @@ struct OneCorner {
   std::vector<Eigen::Vector3d> points = {{0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}};
   WarpedBoard board{points};
   camera::Camera camera{camera::startModel(camera::modelByName("pinhole-none"), 500.0, {320.0, 240.0}), 640, 480};
-  CameraMeasurements measurements{0, {{0, {320.0, 240.0}, Eigen::Matrix2d::Identity(), CornerState::kUsed}}};
+  CameraMeasurements measurements{
+      0, {{0, {320.0, 240.0}, Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Identity(), CornerState::kUsed}}};
 
   double cost(const Eigen::Vector3d& t_cam_target, const RobustLoss& loss) const {
     return blockCost({measurements, board, camera, geometry::Rigid3(Eigen::Quaterniond::Identity(), t_cam_target), loss});

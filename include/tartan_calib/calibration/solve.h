@@ -82,8 +82,10 @@ struct Solution {
   std::vector<CornerCounts> counts;      ///< by camera
   std::vector<int> unsolved_views;       ///< without a used corner; these keep their start pose
 
-  double sigma_px = 0.0;        ///< stdev of a residual component: sqrt(sum of squares / (measurements - parameters))
-  double sigma_whitened = 0.0;  ///< the same of residuals over Corner::cov_px2; equals sigma_px where that is the identity
+  double sigma_px = 0.0;  ///< stdev of a residual component: sqrt(sum of squares / (measurements - parameters))
+  /// By camera: stdev that the lens model's own error adds to the corners', estimated so that residuals over both are 1.
+  std::vector<double> model_errors_px;
+  double sigma_whitened = 0.0;  ///< the same of residuals over Corner::cov_px2 and the model errors
 
   /// Covariance of [for each camera >= 1 its baseline T_i_(i-1): rotation 3 (rad, R <- exp(phi) R), translation 3 (m); for
   /// each camera its parameters in Kalibr's order; board warp 2 where estimated], scaled by sigma_whitened^2. Fixed
