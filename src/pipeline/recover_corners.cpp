@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "stream_images.h"
@@ -13,7 +14,7 @@ namespace {
 using observation::CameraView;
 using observation::Corner;
 
-/// A corner of an earlier round that was not found again stays while it is this close to the prediction.
+/// A corner of an earlier round that was neither solved with nor found again stays while it is this close to the prediction.
 constexpr double kKeptWithin_px = 1.0;
 /// Corners needed to turn a guessed pose into an estimated one.
 constexpr std::size_t kMinPoseCorners = 8;
@@ -33,18 +34,18 @@ detection::BoardMap boardMap(const camera::Camera& camera, const geometry::Rigid
       camera.model);
 }
 
-/// Adds corners of the earlier round that the new one does not have and that still fit.
-void keepEarlier(const std::vector<Corner>& earlier, const detection::BoardMap& map,
+/// Adds corners of the earlier round that the new one does not have and that still fit: those that the solve used, and those
+/// close to their predictions.
+void keepEarlier(const std::vector<Corner>& earlier, const std::set<int>& used, const detection::BoardMap& map,
                  const std::vector<Eigen::Vector3d>& target_points, std::vector<Corner>& corners) {
-  const std::size_t num_found = corners.size();
-  const auto found_end = [&] { return corners.begin() + static_cast<std::ptrdiff_t>(num_found); };
+  std::set<int> found;
+  for (const Corner& corner : corners) {
+    found.insert(corner.corner_id);
+  }
   for (const Corner& corner : earlier) {
-    const auto is_same = [&corner](const Corner& other) { return other.corner_id == corner.corner_id; };
-    if (std::any_of(corners.begin(), found_end(), is_same)) {
-      continue;
-    }
     const auto px = map(target_points[static_cast<std::size_t>(corner.corner_id)].head<2>());
-    if (px && (*px - corner.px).norm() <= kKeptWithin_px) {
+    const bool is_close = px && (*px - corner.px).norm() <= kKeptWithin_px;
+    if (found.count(corner.corner_id) == 0 && (is_close || used.count(corner.corner_id) > 0)) {
       corners.push_back(corner);
     }
   }
@@ -62,6 +63,13 @@ class ImageRecovery {
         start_(start) {
     for (const CameraView& image : previous.images) {
       earlier_[image.stamp_ns] = &image.corners;
+    }
+    for (const observation::View& view : start.solution.views) {
+      for (const CameraView& image : view.cameras) {
+        if (image.camera_index == camera_index) {
+          rememberUsed(image);
+        }
+      }
     }
   }
 
@@ -84,7 +92,7 @@ class ImageRecovery {
     try {
       const cv::Mat gray = image.load();
       if (gray.cols == camera_.width && gray.rows == camera_.height) {
-        view.corners = recoverFrom(gray, *T_cam_target, is_solved, earlier);
+        view.corners = recoverFrom(gray, *T_cam_target, is_solved, earlier, usedIn(image.stamp_ns));
       }
     } catch (const InputError&) {
       // Counted when the images were read for the first time.
@@ -93,8 +101,21 @@ class ImageRecovery {
   }
 
  private:
+  void rememberUsed(const CameraView& image) {
+    for (const Corner& corner : image.corners) {
+      if (corner.used) {
+        used_[image.stamp_ns].insert(corner.corner_id);
+      }
+    }
+  }
+
+  std::set<int> usedIn(std::int64_t stamp_ns) const {
+    const auto found = used_.find(stamp_ns);
+    return found == used_.end() ? std::set<int>() : found->second;
+  }
+
   std::vector<Corner> recoverFrom(const cv::Mat& gray, const geometry::Rigid3& T_cam_target, bool is_solved,
-                                  const std::vector<Corner>& earlier) const {
+                                  const std::vector<Corner>& earlier, const std::set<int>& used) const {
     detection::BoardMap map = boardMap(camera_, T_cam_target);
     std::vector<Corner> corners = recovery_.recover(gray, map);
     if (!is_solved && corners.size() >= kMinPoseCorners) {
@@ -104,7 +125,7 @@ class ImageRecovery {
         corners = recovery_.recover(gray, map);
       }
     }
-    keepEarlier(earlier, map, start_.target_points, corners);
+    keepEarlier(earlier, used, map, start_.target_points, corners);
     return corners;
   }
 
@@ -113,6 +134,7 @@ class ImageRecovery {
   const detection::CornerRecovery& recovery_;
   const RoundStart& start_;
   std::map<std::int64_t, const std::vector<Corner>*> earlier_;
+  std::map<std::int64_t, std::set<int>> used_;  ///< by the solution, ids by image
 };
 
 }  // namespace
