@@ -20,6 +20,7 @@ Parameters make up for each other (the scale and the shape of a lens, above all)
 ray: the difference of the projections over the image, with the rotation between the two camera frames removed.
 
   --max-angle-deg A      look at rays to this angle from the axis (90)
+  --distance M           compare for points so many metres away, a translation removed too (infinity)
   --corners F [F ...]    only where all these recordings (files of --export-corners) have corners
   -h, --help             this text
 )";
@@ -30,6 +31,7 @@ constexpr double kRadiansPerDegree = 0.017453292519943295;
 po::variables_map parse(int argc, char** argv) {
   po::options_description options;
   options.add_options()("help,h", "")("max-angle-deg", po::value<double>()->default_value(kDefaultMaxAngle_deg));
+  options.add_options()("distance", po::value<double>());
   options.add_options()("corners", po::value<std::vector<std::string>>()->multitoken());
   options.add_options()("camchain", po::value<std::vector<std::string>>());
   po::positional_options_description files;
@@ -56,6 +58,12 @@ int run(int argc, char** argv) {
   }
   ComparisonRegion region;
   region.max_angle_rad = values["max-angle-deg"].as<double>() * kRadiansPerDegree;
+  if (values.count("distance") > 0) {
+    region.distance_m = values["distance"].as<double>();
+    if (!(*region.distance_m > 0.0)) {
+      throw UsageError("--distance must be a positive number of metres");
+    }
+  }
   if (values.count("corners") > 0) {
     for (const std::string& file : values["corners"].as<std::vector<std::string>>()) {
       region.recordings.push_back(io::loadCorners(file));

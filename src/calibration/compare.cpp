@@ -13,61 +13,73 @@ namespace {
 
 constexpr int kMinSamples = 3;
 constexpr int kMaxSteps = 50;
-constexpr double kConverged_rad = 1e-12;
+constexpr double kConverged = 1e-12;  ///< of a step [rad, m]
 
-struct RaySample {
+struct PointSample {
   Eigen::Vector2d px_a;
-  Eigen::Vector3d ray_a;
+  Eigen::Vector3d p_a;
 };
 
-std::vector<RaySample> raysOf(const camera::CameraModel& a, const std::vector<Eigen::Vector2d>& samples_px) {
-  std::vector<RaySample> rays;
+/// Points that a sees at the pixels, all at the same distance.
+std::vector<PointSample> pointsOf(const camera::CameraModel& a, const std::vector<Eigen::Vector2d>& samples_px,
+                                  double distance_m) {
+  std::vector<PointSample> points;
   for (const Eigen::Vector2d& px : samples_px) {
     if (const auto ray = camera::unproject(a, px)) {
-      rays.push_back({px, *ray});
+      points.push_back({px, distance_m * *ray});
     }
   }
-  return rays;
+  return points;
 }
 
-/// One Gauss-Newton step for the rotation, phi in R <- exp(phi) R. Rays that b cannot project take no part.
+/// One Gauss-Newton step, xi in T <- exp(xi) T; without `moves` its translation stays zero. Points that b cannot project
+/// take no part.
 template <class Model>
-Eigen::Vector3d rotationStep(const Model& b, const std::vector<RaySample>& rays, const Eigen::Quaterniond& R_b_a) {
-  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  for (const RaySample& sample : rays) {
-    const Eigen::Vector3d ray_b = R_b_a * sample.ray_a;
+geometry::Vector6d motionStep(const Model& b, const std::vector<PointSample>& points, const geometry::Rigid3& T_b_a,
+                              bool moves) {
+  geometry::Matrix6d H = geometry::Matrix6d::Zero();
+  geometry::Vector6d gradient = geometry::Vector6d::Zero();
+  for (const PointSample& sample : points) {
+    const Eigen::Vector3d p_b = T_b_a * sample.p_a;
     Eigen::Vector2d px_b;
-    camera::Matrix23d J_px_ray;
-    if (!b.project(ray_b, px_b, &J_px_ray)) {
+    camera::Matrix23d J_px_p;
+    if (!b.project(p_b, px_b, &J_px_p)) {
       continue;
     }
-    const camera::Matrix23d J_px_phi = -J_px_ray * geometry::hat(ray_b);
-    H += J_px_phi.transpose() * J_px_phi;
-    gradient += J_px_phi.transpose() * (px_b - sample.px_a);
+    Eigen::Matrix<double, 2, 6> J_px_xi;
+    J_px_xi << J_px_p, -J_px_p * geometry::hat(p_b);
+    H += J_px_xi.transpose() * J_px_xi;
+    gradient += J_px_xi.transpose() * (px_b - sample.px_a);
   }
-  return -H.ldlt().solve(gradient);
+  geometry::Vector6d xi = geometry::Vector6d::Zero();
+  if (moves) {
+    xi = -H.ldlt().solve(gradient);
+  } else {
+    xi.tail<3>() = -H.bottomRightCorner<3, 3>().ldlt().solve(gradient.tail<3>());
+  }
+  return xi;
 }
 
 }  // namespace
 
 ProjectionDifference compareProjections(const camera::CameraModel& a, const camera::CameraModel& b,
-                                        const std::vector<Eigen::Vector2d>& samples_px) {
-  const std::vector<RaySample> rays = raysOf(a, samples_px);
+                                        const std::vector<Eigen::Vector2d>& samples_px, std::optional<double> distance_m) {
+  const std::vector<PointSample> points = pointsOf(a, samples_px, distance_m.value_or(1.0));
   ProjectionDifference result;
-  for (int step = 0; step < kMaxSteps && !rays.empty(); ++step) {
-    const Eigen::Vector3d phi = std::visit([&](const auto& model) { return rotationStep(model, rays, result.R_b_a); }, b);
-    if (!phi.allFinite()) {
+  for (int step = 0; step < kMaxSteps && !points.empty(); ++step) {
+    const auto stepIn = [&](const auto& model) { return motionStep(model, points, result.T_b_a, distance_m.has_value()); };
+    const geometry::Vector6d xi = std::visit(stepIn, b);
+    if (!xi.allFinite()) {
       break;
     }
-    result.R_b_a = (geometry::expRotation(phi) * result.R_b_a).normalized();
-    if (phi.norm() < kConverged_rad) {
+    result.T_b_a = geometry::expRigid(xi) * result.T_b_a;
+    if (xi.norm() < kConverged) {
       break;
     }
   }
   double sum_px2 = 0.0;
-  for (const RaySample& sample : rays) {
-    if (const auto px_b = camera::project(b, result.R_b_a * sample.ray_a)) {
+  for (const PointSample& sample : points) {
+    if (const auto px_b = camera::project(b, result.T_b_a * sample.p_a)) {
       const Eigen::Vector2d difference_px = *px_b - sample.px_a;
       result.pixels.push_back({sample.px_a, difference_px});
       result.max_px = std::max(result.max_px, difference_px.norm());

@@ -7,7 +7,7 @@
 namespace tartan_calib::apps {
 namespace {
 
-const ComparisonRegion kWide{1.5, {}};
+const ComparisonRegion kWide{1.5, std::nullopt, {}};
 
 calibration::RigCamera fisheye(double focal_px) {
   calibration::RigCamera camera;
@@ -42,7 +42,7 @@ TEST(CompareRigs, AnotherPlaceOnTheRigIsToldInRadiansAndMetres) {
 TEST(CompareRigs, ALongerFocalLengthShowsMostAtTheRim) {
   const auto comparison = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, kWide).front();
   EXPECT_GT(comparison.max_px, 1.5 * comparison.rms_px);
-  const auto narrow = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, {0.2, {}}).front();
+  const auto narrow = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, {0.2, std::nullopt, {}}).front();
   EXPECT_LT(narrow.max_px, 0.3 * comparison.max_px);
 }
 
@@ -62,11 +62,11 @@ TEST(CompareRigs, OnlyPixelsNearWhichEveryRecordingHasCornersCount) {
   const Eigen::Vector2d centre(325.0, 245.0);
   const Eigen::Vector2d rim(20.0, 20.0);
   const double everywhere_px = compareRigs(a, b, kWide).front().max_px;
-  const ComparisonRegion middle{1.5, {recordingOf({centre, rim}), recordingOf({centre})}};
+  const ComparisonRegion middle{1.5, std::nullopt, {recordingOf({centre, rim}), recordingOf({centre})}};
   EXPECT_LT(compareRigs(a, b, middle).front().max_px, 0.3 * everywhere_px);
   std::vector<pipeline::CameraCorners> rejected = recordingOf({centre});
   rejected[0].images[0].corners[0].used = false;
-  EXPECT_THROW(compareRigs(a, b, {1.5, {rejected}}), CalibrationError);
+  EXPECT_THROW(compareRigs(a, b, {1.5, std::nullopt, {rejected}}), CalibrationError);
 }
 
 TEST(CompareRigs, OtherRigsAreRefused) {
@@ -74,7 +74,7 @@ TEST(CompareRigs, OtherRigsAreRefused) {
   calibration::Rig larger{{fisheye(200.0)}};
   larger.cameras[0].camera.width = 1000;
   EXPECT_THROW(compareRigs({{fisheye(200.0)}}, larger, kWide), InputError);
-  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {{fisheye(200.0)}}, {1.5, {{}}}), InputError);
+  EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {{fisheye(200.0)}}, {1.5, std::nullopt, {{}}}), InputError);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tartan_calib/error.h"
 #include "tartan_calib/geometry/rigid3.h"
@@ -20,7 +21,7 @@ TEST(CompareTest, TheSameCalibrationDiffersNowhere) {
   const ProjectionDifference difference =
       compareProjections(doubleSphere(640.0), doubleSphere(640.0), imageGrid(1280, 1024, 40.0));
   EXPECT_LT(difference.max_px, 1e-9);
-  EXPECT_LT(difference.R_b_a.angularDistance(Eigen::Quaterniond::Identity()), 1e-12);
+  EXPECT_LT(difference.T_b_a.rotation.angularDistance(Eigen::Quaterniond::Identity()), 1e-12);
 }
 
 TEST(CompareTest, TwoFormulasOfOneLensAreTheSame) {
@@ -39,7 +40,7 @@ TEST(CompareTest, AShiftedPrincipalPointIsTakenUpByARotationUpToWhatTheLensBends
   const ProjectionDifference narrow =
       compareProjections(doubleSphere(640.0), doubleSphere(641.0), {{638.0, 510.0}, {642.0, 510.0}, {640.0, 514.0}});
   EXPECT_LT(narrow.max_px, 1e-3);
-  EXPECT_NEAR(narrow.R_b_a.angularDistance(Eigen::Quaterniond::Identity()), 1.0 / 313.0, 1.0 / 313.0);
+  EXPECT_NEAR(narrow.T_b_a.rotation.angularDistance(Eigen::Quaterniond::Identity()), 1.0 / 313.0, 1.0 / 313.0);
   const ProjectionDifference wide =
       compareProjections(doubleSphere(640.0), doubleSphere(641.0), imageGrid(1280, 1024, 40.0));
   EXPECT_GT(wide.rms_px, 0.01);
@@ -57,6 +58,17 @@ TEST(CompareTest, AScaleErrorShowsAsDifferenceGrowingFromTheCentre) {
   }
   EXPECT_LT(centre_px, 0.6);
   EXPECT_GT(difference.max_px, 5.0);
+}
+
+TEST(CompareTest, AtADistanceACameraFrameFartherBackIsTheSameCalibration) {
+  // Two lenses that differ: what a motion of 2 mm along the axis does to points at 50 mm, a longer focal length does nearly
+  // too.
+  const auto grid = imageGrid(1280, 1024, 40.0);
+  const double infinite_px = compareProjections(doubleSphere(640.0), doubleSphere(640.0, 316.13), grid).rms_px;
+  const ProjectionDifference near = compareProjections(doubleSphere(640.0), doubleSphere(640.0, 316.13), grid, 0.05);
+  EXPECT_LT(near.rms_px, 0.7 * infinite_px);
+  EXPECT_GT(std::abs(near.T_b_a.translation.z()), 1e-4);
+  EXPECT_LT(near.T_b_a.translation.head<2>().norm(), 1e-5);
 }
 
 TEST(CompareTest, NothingToCompareIsAnError) {

@@ -93,8 +93,8 @@ std::vector<CameraComparison> compareRigs(const calibration::Rig& a, const calib
   for (std::size_t i = 0; i < a.cameras.size(); ++i) {
     const calibration::RigCamera& first = a.cameras[i];
     const calibration::RigCamera& second = b.cameras[i];
-    const auto projection =
-        calibration::compareProjections(first.camera.model, second.camera.model, samplesOf(first.camera, i, region));
+    const auto projection = calibration::compareProjections(first.camera.model, second.camera.model,
+                                                            samplesOf(first.camera, i, region), region.distance_m);
     const geometry::Rigid3 T_a_b = first.T_cam_rig * second.T_cam_rig.inverse();
     comparisons.push_back({projection.rms_px, projection.max_px, geometry::logRigid(T_a_b).tail<3>().norm(),
                            (first.T_cam_rig.translation - second.T_cam_rig.translation).norm()});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct CameraComparison {
 /// Which pixels of calibration a are compared.
 struct ComparisonRegion {
   double max_angle_rad = 1.5707963267948966;  ///< from the axis
+  std::optional<double> distance_m;           ///< of the points that are compared; empty: infinity
   /// Where given, only around pixels near which every one of these recordings has a corner.
   std::vector<std::vector<pipeline::CameraCorners>> recordings;
 };
