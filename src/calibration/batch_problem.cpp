@@ -126,15 +126,15 @@ solver::BlockTerms BatchProblem::linearize(int view) const {
   int at = 0;  // in the order of sharedOf
   for (const CameraMeasurements& image : views_[k]) {
     std::vector<Part> parts;
-    const auto addPart = [&](int offset, int local_at, int part_size) {
+    const auto add_part = [&](int offset, int local_at, int part_size) {
       if (offset != SharedLayout::kHeld) {
         parts.push_back({at, local_at, part_size});
         at += part_size;
       }
     };
     const int num_parameters = numParameters(image.camera_index);
-    addPart(layout_.extrinsics(image.camera_index), 0, kPoseSize);
-    addPart(layout_.intrinsics(image.camera_index), kPoseSize, num_parameters);
+    add_part(layout_.extrinsics(image.camera_index), 0, kPoseSize);
+    add_part(layout_.intrinsics(image.camera_index), kPoseSize, num_parameters);
     if (with_warp) {
       parts.push_back({size - kWarpSize, kPoseSize + num_parameters, kWarpSize});
     }

@@ -67,8 +67,8 @@ ProjectionDifference compareProjections(const camera::CameraModel& a, const came
   const std::vector<PointSample> points = pointsOf(a, samples_px, distance_m.value_or(1.0));
   ProjectionDifference result;
   for (int step = 0; step < kMaxSteps && !points.empty(); ++step) {
-    const auto stepIn = [&](const auto& model) { return motionStep(model, points, result.T_b_a, distance_m.has_value()); };
-    const geometry::Vector6d xi = std::visit(stepIn, b);
+    const auto step_in = [&](const auto& model) { return motionStep(model, points, result.T_b_a, distance_m.has_value()); };
+    const geometry::Vector6d xi = std::visit(step_in, b);
     if (!xi.allFinite()) {
       break;
     }
