@@ -22,19 +22,19 @@ template <typename Model>
 typename Model::Parameters levenbergStep(const Model& model, const std::vector<RayPixel>& pairs, double damping) {
   constexpr double kMinDiagonal = 1e-12;  // of the largest: parameters that nothing depends on stay
   constexpr int kSize = Model::kNumParameters;
-  Eigen::Matrix<double, kSize, kSize> JtJ = Eigen::Matrix<double, kSize, kSize>::Zero();
-  typename Model::Parameters Jtr = Model::Parameters::Zero();
+  Eigen::Matrix<double, kSize, kSize> H = Eigen::Matrix<double, kSize, kSize>::Zero();
+  typename Model::Parameters descent = Model::Parameters::Zero();
   for (const RayPixel& pair : pairs) {
     Eigen::Vector2d px;
     typename Model::ParameterJacobian J;
     if (model.project(pair.ray, px, nullptr, &J)) {
-      JtJ += J.transpose() * J;
-      Jtr += J.transpose() * (pair.px - px);
+      H += J.transpose() * J;
+      descent += J.transpose() * (pair.px - px);
     }
   }
-  const double floor = kMinDiagonal * JtJ.diagonal().maxCoeff();
-  JtJ.diagonal() += damping * JtJ.diagonal() + Model::Parameters::Constant(floor);
-  return JtJ.ldlt().solve(Jtr);
+  const double floor = kMinDiagonal * H.diagonal().maxCoeff();
+  H.diagonal() += damping * H.diagonal() + Model::Parameters::Constant(floor);
+  return H.ldlt().solve(descent);
 }
 
 template <typename Model>

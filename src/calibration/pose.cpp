@@ -148,8 +148,8 @@ double robustCost(const Model& model, const std::vector<Sighting>& sightings, co
 template <typename Model>
 geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target,
                             double scale_px, double damping) {
-  geometry::Matrix6d JtJ = geometry::Matrix6d::Zero();
-  geometry::Vector6d Jtr = geometry::Vector6d::Zero();
+  geometry::Matrix6d H = geometry::Matrix6d::Zero();
+  geometry::Vector6d descent = geometry::Vector6d::Zero();
   for (const Sighting& s : sightings) {
     const Eigen::Vector3d p_cam = T_cam_target * s.p_target;
     Eigen::Vector2d px;
@@ -162,11 +162,11 @@ geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sig
     const Eigen::Vector2d residual_px = s.px - px;
     const double weight = cauchyWeight(residual_px.norm(), scale_px);
     const Eigen::Matrix<double, 6, 2> weighted = weight * J.transpose();
-    JtJ.noalias() += weighted.lazyProduct(J);
-    Jtr.noalias() += weighted.lazyProduct(residual_px);
+    H.noalias() += weighted.lazyProduct(J);
+    descent.noalias() += weighted.lazyProduct(residual_px);
   }
-  JtJ.diagonal() *= 1.0 + damping;
-  return JtJ.ldlt().solve(Jtr);
+  H.diagonal() *= 1.0 + damping;
+  return H.ldlt().solve(descent);
 }
 
 template <typename Model>
