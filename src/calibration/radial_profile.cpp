@@ -257,13 +257,13 @@ std::vector<ScoredProfile> searchProfiles(const std::vector<ProfileView>& views,
       profiles.pop_back();
     }
   }
-  const auto isBetter = [](const ScoredProfile& a, const ScoredProfile& b) { return a.score < b.score; };
-  std::stable_sort(profiles.begin(), profiles.end(), isBetter);
+  const auto is_better = [](const ScoredProfile& a, const ScoredProfile& b) { return a.score < b.score; };
+  std::stable_sort(profiles.begin(), profiles.end(), is_better);
   profiles.resize(std::min(profiles.size(), max_profiles));
   for (ScoredProfile& profile : profiles) {
     profile = refine(profile, views, max_radius);
   }
-  std::stable_sort(profiles.begin(), profiles.end(), isBetter);
+  std::stable_sort(profiles.begin(), profiles.end(), is_better);
   const auto last = std::unique(profiles.begin(), profiles.end(), isSameLens);
   profiles.erase(last, profiles.end());
   return profiles;
