@@ -32,9 +32,9 @@ TEST(Solve, NamesACameraThatNothingDetermines) {
     view.cameras.resize(std::min<std::size_t>(1, view.cameras.size()));
   }
   Problem problem = noisyProblem(scene, kNoise_px, 5);
-  for (std::size_t k = 0; k < problem.views.size(); ++k) {
-    if (!problem.views[k].cameras.empty() && problem.views[k].cameras[0].camera_index == 1) {
-      problem.views[k].cameras.clear();
+  for (observation::View& view : problem.views) {
+    if (!view.cameras.empty() && view.cameras[0].camera_index == 1) {
+      view.cameras.clear();
     }
   }
   const Solution solution = solve(problem, {});
