@@ -23,7 +23,7 @@ constexpr std::int64_t kPeriod_ns = 50'000'000;
 inline std::vector<StampedImage> boardImages(int count, const Pinhole& pinhole = {}) {
   std::vector<StampedImage> images;
   for (int i = 0; i < count; ++i) {
-    const cv::Mat image = drawBoard(smallGrid(), pinhole, boardPose(smallGrid(), i));
+    cv::Mat image = drawBoard(smallGrid(), pinhole, boardPose(smallGrid(), i));
     images.push_back({(i + 1) * kPeriod_ns, [image] { return image; }});
   }
   return images;

@@ -162,7 +162,8 @@ TEST(Renderer, saysWhichCornersAHandHides) {
   int num_visible = 0;
   for (int i = 1; i <= kHands; ++i) {
     const cv::Mat changed = cv::abs(without - renderer.renderLight(i, 0));
-    for (const TrueCorner& corner : renderer.render(i).views[0].corners) {
+    const auto frame = renderer.render(i);
+    for (const TrueCorner& corner : frame.views[0].corners) {
       const double nearest_px = distanceToNonZero(changed, corner.px);
       EXPECT_TRUE(!corner.visible || nearest_px > kMinOccluderDistancePx - 0.5) << corner.corner_id;
       EXPECT_TRUE(corner.visible || nearest_px < kMinOccluderDistancePx + 1.5) << corner.corner_id;
@@ -171,7 +172,8 @@ TEST(Renderer, saysWhichCornersAHandHides) {
   }
   EXPECT_GE(num_hidden, 5 * kHands);
   EXPECT_GE(num_visible, 20 * kHands);
-  for (const TrueCorner& corner : renderer.render(0).views[0].corners) {
+  const auto without_hand = renderer.render(0);
+  for (const TrueCorner& corner : without_hand.views[0].corners) {
     EXPECT_TRUE(corner.visible);
   }
 }
@@ -222,7 +224,8 @@ TEST(Renderer, collectsLightInProportionToTheExposure) {
   scene.sensor.read_noise_grey = 2.0;
   scene.frames[1].exposure_ratio = 40.0;
   int num_unknown = 0;
-  for (const TrueCorner& corner : Renderer(scene).render(1).views[0].corners) {
+  const auto frame = Renderer(scene).render(1);
+  for (const TrueCorner& corner : frame.views[0].corners) {
     num_unknown += corner.bound_px2(0, 0) > 1e3 ? 1 : 0;
   }
   EXPECT_GT(num_unknown, 10) << "everything saturated around these corners tells nothing of them";
