@@ -24,7 +24,7 @@ inline geometry::Rigid3 randomMotion(Random& random, double sigma_m, double sigm
 }
 
 /// What each model can show, well inside its domain.
-inline double usualFov_rad(const std::string& model) {
+inline double usualFov(const std::string& model) {
   return model == "pinhole-none" || model == "pinhole-radtan" ? 1.4 : model == "pinhole-fov" ? 2.6 : 3.2;
 }
 
@@ -36,7 +36,7 @@ inline Rig rowOfCameras(const std::vector<std::string>& models, Random& random) 
     geometry::Vector6d xi;
     xi << -0.1 * i, 0.01 * i, 0.005 * i, 0.02 * i, 0.1 * i, -0.03 * i;
     rig.cameras.push_back(
-        {test_support::randomCamera(model, usualFov_rad(model), 1224, 1024, random), geometry::expRigid(xi)});
+        {test_support::randomCamera(model, usualFov(model), 1224, 1024, random), geometry::expRigid(xi)});
   }
   return rig;
 }
