@@ -35,8 +35,7 @@ inline Rig rowOfCameras(const std::vector<std::string>& models, Random& random) 
     const double i = static_cast<double>(rig.cameras.size());
     geometry::Vector6d xi;
     xi << -0.1 * i, 0.01 * i, 0.005 * i, 0.02 * i, 0.1 * i, -0.03 * i;
-    rig.cameras.push_back(
-        {test_support::randomCamera(model, usualFov(model), 1224, 1024, random), geometry::expRigid(xi)});
+    rig.cameras.push_back({test_support::randomCamera(model, usualFov(model), 1224, 1024, random), geometry::expRigid(xi)});
   }
   return rig;
 }
