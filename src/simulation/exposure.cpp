@@ -127,6 +127,11 @@ Exposure ExposureMaker::expose(const Scene& scene, const BoardPattern& pattern, 
             shows_hand ? drawHand(*frame.hand, camera_.camera, pose) : HandLayer());
   }
   Exposure exposure = sum.mean();
+  if (!exposure.occluded.empty()) {
+    const HandLayer hand = drawHand(*frame.hand, camera_.camera, T_cam_target);
+    exposure.cover = cv::Mat1f(exposure.light.size(), 0.0F);
+    hand.cover.copyTo(exposure.cover(hand.window));
+  }
   exposure.light = exposure.light.mul(shading_, frame.exposure_ratio);
   applyPsf(exposure.light, scene.sensor.psf_sigma_px);
   if (!exposure.board_window.empty()) {

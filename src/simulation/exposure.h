@@ -16,6 +16,7 @@ struct Exposure {
   cv::Rect board_window;       ///< the part of the image that the board touches; empty where it is out of view
   cv::Mat2f light_derivative;  ///< of the window's size: d(light) / d(shift of the board's image [px])
   cv::Mat1b occluded;          ///< 255 where a hand covers a part of the pixel at any time; empty without a hand
+  cv::Mat1f cover;             ///< part of each pixel that the hand covers in the middle; empty as `occluded`
 };
 
 /// One camera of a scene with everything that is the same in all of its pictures.

@@ -25,11 +25,18 @@ std::uint64_t pictureSeed(std::uint64_t seed, std::size_t frame_index, std::size
   return z ^ (z >> 31U);
 }
 
-void hideBehindOccluder(std::vector<TrueCorner>& corners, const cv::Mat1b& occluded) {
-  if (occluded.empty()) {
+bool isCovered(const cv::Mat1f& cover, const Eigen::Vector2d& px) {
+  constexpr float kHalfCovered = 0.5F;  // where an edge runs through the middle of a pixel
+  cv::Mat1f at_corner;
+  cv::getRectSubPix(cover, {1, 1}, {static_cast<float>(px.x()), static_cast<float>(px.y())}, at_corner);
+  return at_corner(0, 0) >= kHalfCovered;
+}
+
+void hideBehindOccluder(std::vector<TrueCorner>& corners, const Exposure& exposure) {
+  if (exposure.occluded.empty()) {
     return;
   }
-  const cv::Mat clear = occluded == 0;
+  const cv::Mat clear = exposure.occluded == 0;
   cv::Mat1f distance_px;
   cv::distanceTransform(clear, distance_px, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   constexpr double kHalfPixel = 0.5;  // distances go from centre to centre
@@ -37,6 +44,7 @@ void hideBehindOccluder(std::vector<TrueCorner>& corners, const cv::Mat1b& occlu
     const int col = std::clamp(static_cast<int>(std::lround(corner.px.x())), 0, distance_px.cols - 1);
     const int row = std::clamp(static_cast<int>(std::lround(corner.px.y())), 0, distance_px.rows - 1);
     corner.visible &= static_cast<double>(distance_px(row, col)) >= kMinOccluderDistancePx + kHalfPixel;
+    corner.hidden |= isCovered(exposure.cover, corner.px);
   }
 }
 
@@ -65,9 +73,11 @@ class Renderer::Studio {
     view.image = simulation::expose(exposure.light, scene_.sensor, pictureSeed(scene_.seed, frame_index, camera_index));
     view.corners = projectCorners(scene_.target, camera.camera, view.T_cam_target);
     for (TrueCorner& corner : view.corners) {
-      corner.visible &= distanceInsideCircle(camera, corner.px) >= kMinBorderDistancePx;
+      const double inside_px = distanceInsideCircle(camera, corner.px);
+      corner.visible &= inside_px >= kMinBorderDistancePx;
+      corner.hidden |= inside_px < 0.0;
     }
-    hideBehindOccluder(view.corners, exposure.occluded);
+    hideBehindOccluder(view.corners, exposure);
     const InformationBound bound(exposure, scene_, camera.camera, view.T_cam_target);
     for (TrueCorner& corner : view.corners) {
       corner.bound_px2 = bound.ofCorner(corner);

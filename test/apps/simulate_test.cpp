@@ -90,6 +90,13 @@ TEST_F(Simulate, WritesItsTruthInTheFormatsOfACalibration) {
   EXPECT_EQ(num_visible, summary.num_visible_corners);
   EXPECT_GT(num_visible, 200U);
   EXPECT_LT(num_visible, num_corners);
+  const std::string visibility = bytes("run-truth-visibility.csv");
+  std::size_t num_said_visible = 0;
+  for (std::size_t at = visibility.find(",visible,"); at != std::string::npos; at = visibility.find(",visible,", at + 1)) {
+    ++num_said_visible;
+  }
+  EXPECT_EQ(num_said_visible, num_visible);
+  EXPECT_NE(visibility.find(",hidden,"), std::string::npos);
   EXPECT_EQ(bytes("run-truth-poses.csv").rfind("#timestamp", 0), 0U);
 }
 

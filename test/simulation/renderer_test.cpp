@@ -178,6 +178,33 @@ TEST(Renderer, saysWhichCornersAHandHides) {
   }
 }
 
+TEST(Renderer, CallsACornerHiddenWhereTheHandCoversItAndNotWhereItIsOnlyNear) {
+  Scene scene = stillScene();
+  SceneFrame& frame = scene.frames[0];
+  frame.motion.setZero();
+  const cv::Mat without = Renderer(scene).renderLight(0, 0);
+  frame.hand = Hand{{0.15, 0.12}, 2.0, 0.6};
+  const Renderer renderer(scene);
+  const cv::Mat changed = cv::abs(without - renderer.renderLight(0, 0));
+  cv::Mat unchanged;
+  cv::Mat(changed < 1e-2).convertTo(unchanged, CV_32F);
+  const auto rendered = renderer.render(0);
+  int num_hidden = 0;
+  int num_near = 0;
+  for (const TrueCorner& corner : rendered.views[0].corners) {
+    const double hand_px = distanceToNonZero(changed, corner.px);
+    EXPECT_FALSE(corner.visible && corner.hidden);
+    EXPECT_TRUE(!corner.hidden || hand_px < 1.0) << corner.corner_id;
+    const bool is_near = !corner.visible && !corner.hidden;
+    EXPECT_TRUE(!is_near || hand_px < kMinOccluderDistancePx + 1.5) << corner.corner_id;
+    EXPECT_TRUE(!is_near || distanceToNonZero(unchanged, corner.px) < 1.0) << corner.corner_id;
+    num_hidden += corner.hidden ? 1 : 0;
+    num_near += is_near ? 1 : 0;
+  }
+  EXPECT_GE(num_hidden, 3);
+  EXPECT_GE(num_near, 1);
+}
+
 TEST(Renderer, isBlackOutsideOfTheLensCircleAndSaysSoOfItsCorners) {
   Scene scene = stillScene();
   scene.cameras[0].image_circle_px = 60.0;
@@ -189,6 +216,7 @@ TEST(Renderer, isBlackOutsideOfTheLensCircleAndSaysSoOfItsCorners) {
   for (const TrueCorner& corner : view.corners) {
     const double r = (corner.px - centre).norm();
     EXPECT_EQ(corner.visible, r <= 58.0) << r;
+    EXPECT_EQ(corner.hidden, r > 60.0) << r;
     num_outside += corner.visible ? 0 : 1;
   }
   EXPECT_GT(num_outside, 5);

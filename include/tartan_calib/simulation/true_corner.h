@@ -12,11 +12,13 @@ namespace tartan_calib::simulation {
 /// Variance that says that pixels do not determine a corner; a thousand pixels are as good as anywhere.
 constexpr double kNoInformationPx2 = 1e6;
 
-/// Where a corner of the board really is in an image.
+/// Where a corner of the board really is in an image. One that is neither visible nor hidden is in the picture, but too
+/// close to its border, to the circle's or to an occluder's for anybody to be blamed who does not find it.
 struct TrueCorner {
   int corner_id = -1;
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
   bool visible = true;                 ///< inside of the image and of the lens' circle, and clear of occluders
+  bool hidden = false;                 ///< not in the picture: outside of the lens' circle, or behind an occluder
   double neighbour_distance_px = 0.0;  ///< to the nearest other corner of the board
   /// Cramer-Rao bound: no unbiased estimate from the pixels around this corner can have a smaller covariance. Known for
   /// the pictures of a Renderer only.

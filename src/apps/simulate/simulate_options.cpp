@@ -19,6 +19,8 @@ constexpr const char* kHelp = R"(Renders a recording of a calibration board, wit
 writes sample.bag and, beside it, sample-target.yaml, sample-truth-camchain.yaml, sample-truth-poses.csv (T_target_cam0 as
 Kalibr's --export-poses) and sample-truth-corners.csv: every corner within the image; used = 1 where it is visible, that is
 2 px inside of the image and of the lens' circle and 6 px from the hand; cov_* is the Cramer-Rao bound of the pixels around it.
+sample-truth-visibility.csv says the same in words: visible; hidden by the hand or outside of the lens' circle; or near one of
+these or the image's border, so that it may be seen or not. Beside it the distance to the nearest other corner of the board.
 
   --preset P        options for a purpose; those given beside it win
                       sample   2 cameras of 190 degrees, 1000x800, 60 views, some with motion blur or a hand

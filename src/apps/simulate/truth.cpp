@@ -3,7 +3,6 @@
 #include <iomanip>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include "simulate/recording_writer.h"
 #include "tartan_calib/error.h"
@@ -63,6 +62,13 @@ std::vector<std::vector<int>> overlaps(const std::vector<pipeline::CameraCorners
   return overlaps;
 }
 
+const char* visibility(const simulation::TrueCorner& corner) {
+  if (corner.visible) {
+    return "visible";
+  }
+  return corner.hidden ? "hidden" : "near";
+}
+
 calibration::Rig rig(const simulation::Scene& scene) {
   calibration::Rig rig;
   for (const simulation::SceneCamera& camera : scene.cameras) {
@@ -81,6 +87,7 @@ std::string targetText(const target::Target& target) {
 }
 
 Truth::Truth(const simulation::Scene& scene) : scene_(scene) {
+  visibility_ << "camera,stamp_ns,corner_id,visibility,neighbour_px\n" << std::fixed << std::setprecision(2);
   for (const simulation::SceneCamera& camera : scene.cameras) {
     pipeline::CameraCorners corners;
     corners.topic = imageTopic(cameras_.size());
@@ -97,6 +104,8 @@ void Truth::add(const simulation::RenderedFrame& frame) {
     image.stamp_ns = frame.stamp_ns;
     for (const simulation::TrueCorner& corner : frame.views[camera].corners) {
       image.corners.push_back({corner.corner_id, corner.px, corner.bound_px2, corner.visible});
+      visibility_ << camera << ',' << frame.stamp_ns << ',' << corner.corner_id << ',' << visibility(corner) << ','
+                  << corner.neighbour_distance_px << '\n';
     }
     cameras_[camera].images.push_back(image);
     ++cameras_[camera].num_images;
@@ -141,6 +150,7 @@ void Truth::save(const std::string& base) const {
   io::writeFile(base + "-truth-camchain.yaml", io::camchainText(chain));
   io::writeFile(base + "-truth-poses.csv", io::posesText(result));
   io::saveCorners(base + "-truth-corners.csv", cameras_);
+  io::writeFile(base + "-truth-visibility.csv", visibility_.str());
 }
 
 }  // namespace tartan_calib::apps

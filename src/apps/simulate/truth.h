@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,14 @@ class Truth {
   std::size_t numCorners() const;
   std::size_t numVisibleCorners() const;
 
-  /// `<base>-target.yaml`, `<base>-truth-camchain.yaml`, `-truth-poses.csv` and `-truth-corners.csv`.
+  /// `<base>-target.yaml`, `<base>-truth-camchain.yaml`, `-truth-poses.csv`, `-truth-corners.csv` and
+  /// `-truth-visibility.csv`.
   void save(const std::string& base) const;
 
  private:
   simulation::Scene scene_;
   std::vector<pipeline::CameraCorners> cameras_;
+  std::ostringstream visibility_;
 };
 
 /// A target in Kalibr's YAML. Throws InputError for circle grids, which are not simulated.
