@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 
 class Simulate : public ::testing::Test {
  protected:
-  Simulate() : folder_(fs::temp_directory_path() / ("simulate_test." + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
+  Simulate() : folder(fs::temp_directory_path() / ("simulate_test." + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
   }
-  ~Simulate() override { fs::remove_all(folder_); }
+  ~Simulate() override { fs::remove_all(folder); }
 
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
 
   std::string bytes(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
+    std::ifstream file(folder / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
 
@@ -41,22 +41,22 @@ class Simulate : public ::testing::Test {
     return *parseSimulateOptions(arguments);
   }
 
-  fs::path folder_;
+  fs::path folder;
 };
 
 TEST_F(Simulate, WritesAFolderThatIsTheSameWithAnyNumberOfThreads) {
   simulate(options({"--output-dir", path("a"), "--threads", "1"}));
   simulate(options({"--output-dir", path("b"), "--threads", "3"}));
   int num_images = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "a")) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "a")) {
     if (entry.is_regular_file()) {
-      const fs::path relative = fs::relative(entry.path(), folder_ / "a");
+      const fs::path relative = fs::relative(entry.path(), folder / "a");
       EXPECT_EQ(bytes("a" / relative), bytes("b" / relative)) << relative;
       ++num_images;
     }
   }
   EXPECT_EQ(num_images, 8);
-  EXPECT_TRUE(fs::exists(folder_ / "a/cam1/1600000000250000000.png"));
+  EXPECT_TRUE(fs::exists(folder / "a/cam1/1600000000250000000.png"));
   EXPECT_EQ(bytes("a-truth-corners.csv"), bytes("b-truth-corners.csv"));
 }
 
@@ -104,7 +104,7 @@ TEST_F(Simulate, WritesABagWithEveryCameraOnItsTopic) {
   const SimulateSummary summary = simulate(options({"--output-bag", path("run.bag")}));
   EXPECT_EQ(summary.base, path("run"));
   EXPECT_EQ(summary.num_images, 8U);
-  EXPECT_TRUE(fs::exists(folder_ / "run-truth-camchain.yaml"));
+  EXPECT_TRUE(fs::exists(folder / "run-truth-camchain.yaml"));
   for (const pipeline::CameraStream& stream : ros::openBag(path("run.bag"), {"/cam0/image_raw", "/cam1/image_raw"}, {})) {
     EXPECT_EQ(stream.num_images, 4U);
     const auto first = stream.open()();
@@ -115,7 +115,7 @@ TEST_F(Simulate, WritesABagWithEveryCameraOnItsTopic) {
 }
 
 TEST_F(Simulate, TakesTheBoardOfAFile) {
-  std::ofstream(folder_ / "board.yaml") << "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 7\n"
+  std::ofstream(folder / "board.yaml") << "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 7\n"
                                            "rowSpacingMeters: 0.06\ncolSpacingMeters: 0.05\n";
   const simulation::Scene scene = makeScene(options({"--output-dir", path("run"), "--target", path("board.yaml")}));
   EXPECT_EQ(targetText(scene.target), bytes("board.yaml"));
@@ -123,10 +123,10 @@ TEST_F(Simulate, TakesTheBoardOfAFile) {
 
 TEST_F(Simulate, LeavesNothingBehindWhereItCannotWrite) {
   EXPECT_THROW(simulate(options({"--output-bag", path("missing/run.bag")})), InputError);
-  fs::create_directories(folder_ / "there");
+  fs::create_directories(folder / "there");
   EXPECT_THROW(simulate(options({"--output-dir", path("there")})), InputError);
-  fs::remove(folder_ / "there");
-  EXPECT_TRUE(fs::is_empty(folder_));
+  fs::remove(folder / "there");
+  EXPECT_TRUE(fs::is_empty(folder));
 }
 
 TEST(SimulateOptions, ComeFromThePresetWhereTheyAreNotGiven) {
