@@ -200,9 +200,10 @@ std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraSt
 }
 
 bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
-  const std::vector<CameraCorners> recovered = recoverAll(streams);
+  std::vector<CameraCorners> recovered = recoverAll(streams);
   RoundSummary summary = compareCorners(corners_, recovered);
   summary.round = static_cast<int>(result_.rounds.size()) + 1;
+  keepRounds(corners_, summary.round, recovered);
   corners_ = recovered;
   known_rig_ = result_.solution.rig;
   for (std::size_t i = 0; i < corners_.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -17,15 +18,21 @@ constexpr double kSettledGain = 0.01;   ///< of all corners
 constexpr double kSettledChange_px = 0.02;
 constexpr double kGridCells = 24.0;  ///< over the image's width
 
-std::set<CornerKey> cornerKeys(const std::vector<CameraCorners>& cameras) {
-  std::set<CornerKey> keys;
+/// Calls `visit(key, corner)` for every corner.
+template <typename Cameras, typename Visit>
+void forEachCorner(Cameras& cameras, const Visit& visit) {
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    for (const observation::CameraView& image : cameras[i].images) {
-      for (const observation::Corner& corner : image.corners) {
-        keys.emplace(i, image.stamp_ns, corner.corner_id);
+    for (auto& image : cameras[i].images) {
+      for (auto& corner : image.corners) {
+        visit(CornerKey{i, image.stamp_ns, corner.corner_id}, corner);
       }
     }
   }
+}
+
+std::set<CornerKey> cornerKeys(const std::vector<CameraCorners>& cameras) {
+  std::set<CornerKey> keys;
+  forEachCorner(cameras, [&keys](const CornerKey& key, const observation::Corner& /*corner*/) { keys.insert(key); });
   return keys;
 }
 
@@ -56,6 +63,15 @@ RoundSummary compareCorners(const std::vector<CameraCorners>& before, const std:
   summary.gained = countMissing(keys_after, keys_before);
   summary.lost = countMissing(keys_before, keys_after);
   return summary;
+}
+
+void keepRounds(const std::vector<CameraCorners>& before, int round, std::vector<CameraCorners>& after) {
+  std::map<CornerKey, int> first_rounds;
+  forEachCorner(before, [&](const CornerKey& key, const observation::Corner& corner) { first_rounds[key] = corner.round; });
+  forEachCorner(after, [&](const CornerKey& key, observation::Corner& corner) {
+    const auto first = first_rounds.find(key);
+    corner.round = first == first_rounds.end() ? round : first->second;
+  });
 }
 
 void describeSolution(const calibration::Rig& before, const calibration::Solution& solution,

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -96,6 +97,22 @@ TEST(RoundsTest, FindCornersThatDetectionMissed) {
 TEST(RoundsTest, AnImageWithTooFewTagsForRoundZeroTakesPartAfterwards) {
   EXPECT_FALSE(takesPart(run(0), kLeavingImage));
   EXPECT_TRUE(takesPart(run(1), kLeavingImage));
+}
+
+TEST(RoundsTest, CornersKnowTheRoundThatSawThemFirst) {
+  const auto count = [](const CalibrationResult& result, int round) {
+    int corners = 0;
+    for (const observation::CameraView& image : observedCorners(result).front().images) {
+      corners += static_cast<int>(std::count_if(image.corners.begin(), image.corners.end(),
+                                                [round](const auto& corner) { return corner.round == round; }));
+    }
+    return corners;
+  };
+  const CalibrationResult before = run(0);
+  const CalibrationResult after = run(1);
+  EXPECT_GT(count(after, 1), 0);
+  EXPECT_EQ(count(after, 1), after.rounds[0].gained);
+  EXPECT_EQ(count(after, 0), count(before, 0) - after.rounds[0].lost);
 }
 
 TEST(RoundsTest, StopOnceNothingImproves) {

@@ -12,6 +12,7 @@ struct Corner {
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d cov_px2 = Eigen::Matrix2d::Identity();  ///< uncertainty of px; identity where the detector knows nothing
   bool used = true;                                       ///< false: rejected by the last solve
+  int round = 0;                                          ///< of recovery that saw it first; 0: the detection
 };
 
 /// The corners that one camera saw in one image, by increasing corner_id.
