@@ -1,15 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "tartan_calib/detection/board_map.h"
 #include "tartan_calib/observation/observation.h"
-#include "tartan_calib/target/tag_family.h"
 #include "tartan_calib/target/target.h"
 
 namespace tartan_calib::detection {
+
+struct CornerCandidate;
+class TagPayload;
 
 struct RecoveryOptions {
   double search_radius_px = 4.0;  ///< how far a corner may be from its prediction
@@ -33,22 +36,17 @@ class CornerRecovery {
   std::vector<observation::Corner> recover(const cv::Mat& gray, const BoardMap& map) const;
 
  private:
-  struct Candidate;
-
-  std::vector<Candidate> recoverCandidates(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
-  std::vector<Candidate> predict(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
+  std::vector<CornerCandidate> recoverCandidates(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
+  std::vector<CornerCandidate> predict(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
   void find(const cv::Mat& gray, const BoardMap& map, const Eigen::Vector2d& expected_shift_px, double radius_px,
-            Candidate& candidate) const;
-  void dropDeviating(std::vector<Candidate>& candidates) const;
-  void findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<Candidate>& candidates) const;
-  void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, std::vector<Candidate>& candidates) const;
-  double payloadCorrelation(const cv::Mat& gray, const BoardMap& map, int tag_index, const Eigen::Vector2d& shift_px) const;
+            CornerCandidate& candidate) const;
+  void findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<CornerCandidate>& candidates) const;
 
   target::Target target_;
   RecoveryOptions options_;
   std::vector<Eigen::Vector3d> corner_points_;
   target::Lattice lattice_;
-  target::TagFamily family_;  ///< empty unless the target is an AprilGrid
+  std::shared_ptr<const TagPayload> payload_;  ///< null unless the target is an AprilGrid
   double half_window_m_ = 0.0;
 };
 

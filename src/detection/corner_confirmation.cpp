@@ -1,0 +1,65 @@
+#include "corner_confirmation.h"
+
+#include <algorithm>
+
+#include "median.h"
+#include "shift_field.h"
+
+namespace tartan_calib::detection {
+namespace {
+
+/// A wrong payload of 36 cells correlates by 0 +- 0.17.
+constexpr double kConfirmingCorrelation = 0.5;
+/// Without its payload a corner must look better than with it.
+constexpr double kUnconfirmedCorrelation = 0.9;
+/// A corner is as light as its neighbours: hands and glare are flatter.
+constexpr double kMinContrastShare = 0.3;
+
+std::size_t tagOf(const target::AprilGrid& grid, const CornerCandidate& candidate) {
+  return static_cast<std::size_t>((candidate.row / 2) * grid.tag_cols + candidate.col / 2);
+}
+
+/// By tag: whether the payload is where one of the found corners says.
+std::vector<bool> confirmedTags(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid,
+                                const TagPayload& payload, const std::vector<CornerCandidate>& candidates) {
+  std::vector<bool> confirmed(static_cast<std::size_t>(target::numTags(grid)), false);
+  for (const CornerCandidate& candidate : candidates) {
+    const std::size_t tag = tagOf(grid, candidate);
+    if (candidate.isFound() && !confirmed[tag]) {
+      confirmed[tag] = payload.correlation(gray, map, static_cast<int>(tag), candidate.shift_px()) > kConfirmingCorrelation;
+    }
+  }
+  return confirmed;
+}
+
+}  // namespace
+
+void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid, const TagPayload& payload,
+                     std::vector<CornerCandidate>& candidates) {
+  const std::vector<bool> confirmed = confirmedTags(gray, map, grid, payload, candidates);
+  const auto onConfirmedTag = [&](std::size_t i) { return confirmed[tagOf(grid, candidates[i])]; };
+  std::vector<double> contrasts;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].isFound() && onConfirmedTag(i)) {
+      contrasts.push_back(candidates[i].match->contrast);
+    }
+  }
+  const double least_contrast = contrasts.empty() ? 0.0 : kMinContrastShare * median(contrasts);
+  std::vector<std::size_t> unconfirmed;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const CornerCandidate& candidate = candidates[i];
+    if (!candidate.isFound()) {
+      continue;
+    }
+    const bool vouched =
+        candidate.match->correlation >= kUnconfirmedCorrelation && neighbourShift(candidates, i, onConfirmedTag);
+    if (candidate.match->contrast < least_contrast || (!onConfirmedTag(i) && !vouched)) {
+      unconfirmed.push_back(i);
+    }
+  }
+  for (const std::size_t i : unconfirmed) {
+    candidates[i].drop();
+  }
+}
+
+}  // namespace tartan_calib::detection

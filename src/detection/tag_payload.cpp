@@ -1,0 +1,61 @@
+#include "tag_payload.h"
+
+#include <cmath>
+
+#include "bilinear.h"
+
+namespace tartan_calib::detection {
+namespace {
+
+/// Pearson's correlation of pairs.
+class Correlation {
+ public:
+  void add(double x, double y) {
+    ++count_;
+    x_ += x;
+    y_ += y;
+    xx_ += x * x;
+    yy_ += y * y;
+    xy_ += x * y;
+  }
+  double value() const {
+    const double product = (count_ * xx_ - x_ * x_) * (count_ * yy_ - y_ * y_);
+    return product > 0.0 ? (count_ * xy_ - x_ * y_) / std::sqrt(product) : 0.0;
+  }
+
+ private:
+  double count_ = 0.0;
+  double x_ = 0.0;
+  double y_ = 0.0;
+  double xx_ = 0.0;
+  double yy_ = 0.0;
+  double xy_ = 0.0;
+};
+
+}  // namespace
+
+TagPayload::TagPayload(const target::AprilGrid& grid)
+    : grid_(grid), family_(target::tagFamily(grid.family)), corner_points_(target::cornerPoints(grid)) {}
+
+double TagPayload::correlation(const cv::Mat& gray, const BoardMap& map, int tag_index,
+                               const Eigen::Vector2d& shift_px) const {
+  const int cells = family_.payload_cells + 2 * grid_.border_cells;
+  const double cell_m = grid_.tag_size_m / cells;
+  const std::vector<int> corner_ids = target::tagCornerIds(grid_, tag_index);
+  const Eigen::Vector2d top_left_m = corner_points_[static_cast<std::size_t>(corner_ids[3])].head<2>();
+  Correlation correlation;
+  for (int row = 0; row < family_.payload_cells; ++row) {
+    for (int col = 0; col < family_.payload_cells; ++col) {
+      const Eigen::Vector2d offset_m((grid_.border_cells + col + 0.5) * cell_m, -(grid_.border_cells + row + 0.5) * cell_m);
+      const auto px = map(top_left_m + offset_m);
+      const Eigen::Vector2d at = px ? Eigen::Vector2d(*px + shift_px) : Eigen::Vector2d::Constant(-1.0);
+      if (canSample(gray, at.x(), at.y())) {
+        const bool white = target::isWhiteCell(family_, grid_.code_offset + tag_index, row, col);
+        correlation.add(sampleBilinear<std::uint8_t>(gray, at.x(), at.y()), white ? 1.0 : -1.0);
+      }
+    }
+  }
+  return correlation.value();
+}
+
+}  // namespace tartan_calib::detection
