@@ -71,6 +71,23 @@ function(tartan_calib_tests name)
   gtest_discover_tests(${name}_test TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
 endfunction()
 
+# tartan_calib_test_programs(<folder> <library>...): every test/<folder>/*.cpp is a program of its own that scripts run, built
+# with the tests and put beside them.
+function(tartan_calib_test_programs folder)
+  file(GLOB programs CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/${folder}/*.cpp)
+  foreach(source ${programs})
+    get_filename_component(program ${source} NAME_WE)
+    add_executable(${program} ${source})
+    set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test)
+    if(TARTAN_CALIB_IN_WORKSPACE)
+      set_target_properties(${program} PROPERTIES EXCLUDE_FROM_ALL ON)
+      add_dependencies(tests ${program})
+    endif()
+    target_compile_options(${program} PRIVATE ${TARTAN_CALIB_WARNINGS})
+    target_link_libraries(${program} PRIVATE ${ARGN})
+  endforeach()
+endfunction()
+
 # tartan_calib_script_tests(<folder> [VARIABLE=value...]): every test/<folder>/*_test.py is one case of ctest, run by the
 # system's Python 3 with these variables in its environment.
 function(tartan_calib_script_tests folder)

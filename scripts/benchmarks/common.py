@@ -1,8 +1,10 @@
 """What the experiments share: the programs, tables, corner CSVs, and recordings made of folders or rendered."""
 
 import csv
+import dataclasses
 import pathlib
 import re
+import resource
 import subprocess
 import time
 
@@ -18,17 +20,45 @@ class Failed(Exception):
     """A program of ours ended with an error; the text is its last line."""
 
 
+@dataclasses.dataclass
+class Settings:
+    """What the command line chooses; every experiment gets it."""
+
+    data: pathlib.Path  # folder of the recordings that are not rendered
+    peers: dict  # name of another detector -> its corner file
+
+
+class Stopwatch:
+    """with Stopwatch() as watch: ...; wall_s and, of the programs that ended meanwhile, the processor time cpu_s."""
+
+    def __enter__(self):
+        self._wall_s, self._cpu_s = time.monotonic(), self._children_s()
+        return self
+
+    def __exit__(self, *_):
+        self.wall_s, self.cpu_s = time.monotonic() - self._wall_s, self._children_s() - self._cpu_s
+
+    @staticmethod
+    def _children_s():
+        usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return usage.ru_utime + usage.ru_stime
+
+
 def run(program, *arguments):
-    """Runs a program of this package; returns its stdout and the seconds it took."""
+    """Runs a program of this package, or any by its path; returns its stdout and the seconds it took."""
     command = [str(PROGRAMS / program), *map(str, arguments)]
-    start = time.monotonic()
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    seconds = time.monotonic() - start
+    with Stopwatch() as watch:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     (WORK / "log.txt").open("a").write("$ " + " ".join(command) + "\n" + done.stdout + "\n")
     if done.returncode != 0:
         lines = [line for line in done.stdout.splitlines() if line.strip()] or ["no output"]
         raise Failed(f"{program} exited with {done.returncode}: {lines[-1]}")
-    return done.stdout, seconds
+    return done.stdout, watch.wall_s
+
+
+def test_program(name):
+    """Path of a program that is built with the tests; None where they are not built."""
+    return next((ROOT / "build" / "ws" / "build").rglob(f"test/{name}"), None)
 
 
 def calibrate(output, source, target, models, topics, *flags):
@@ -123,6 +153,6 @@ def corners_per_image(path, used=True):
 def rendered(name, *flags):
     """A rendered recording with its truth; made once."""
     bag = WORK / f"{name}.bag"
-    if not (WORK / f"{name}-truth-camchain.yaml").exists():
+    if not (WORK / f"{name}-truth-visibility.csv").exists():
         run("simulate", *flags, "--output-bag", bag)
     return bag, WORK / f"{name}-target.yaml", WORK / f"{name}-truth-camchain.yaml"

@@ -13,14 +13,14 @@ from benchmarks.common import (WORK, calibrate, camera, corners_per_image, diffe
                                split_by_stamp, table, write_corners)
 
 
-def d435i(data):
+def d435i(settings):
     """Ordinary lens, colour JPEG, made a bag: pinhole-radtan from nothing."""
-    folder = linked_folder("d435i", data / "d435i_rgb" / "images")
+    folder = linked_folder("d435i", settings.data / "d435i_rgb" / "images")
     bag = WORK / "d435i.bag"
     run("make_bag", "--folder", folder, "--output-bag", bag)
     rows = []
     for label, flags in no_rounds("d435i"):
-        chain, record, seconds = calibrate(WORK / "d435i", bag, data / "d435i_rgb" / "target.yaml", ["pinhole-radtan"],
+        chain, record, seconds = calibrate(WORK / "d435i", bag, settings.data / "d435i_rgb" / "target.yaml", ["pinhole-radtan"],
                                            ["/cam0/image_raw"], *flags)
         fu, fv = chain["cam0"]["intrinsics"][:2]
         rows.append([label, f"{rms(record):.3f}", f"{fu:.2f} ({percent(fu, 608.3)})", f"{fv:.2f} ({percent(fv, 610.9)})",
@@ -34,11 +34,11 @@ PUBLISHED_EUROC = [
 ]
 
 
-def euroc(data):
+def euroc(settings):
     """Recorded corners of a stereo pair: trained on four of five views, checked on the fifth (poses only)."""
     rows = []
     for index in range(2):
-        with gzip.open(data / "euroc_corners" / f"cam{index}.csv.gz", "rt") as file:
+        with gzip.open(settings.data / "euroc_corners" / f"cam{index}.csv.gz", "rt") as file:
             next(file)
             for stamp, tag, corner, u, v, *_ in csv.reader(file):
                 row, col = divmod(int(tag), 6)
@@ -49,7 +49,7 @@ def euroc(data):
     comments = [f"# cam{index} 752 480 /cam{index}/image_raw" for index in range(2)]
     write_corners(WORK / "euroc.csv", comments, rows)
     split_by_stamp(WORK / "euroc.csv", WORK / "euroc-test.csv", WORK / "euroc-train.csv", lambda index: index % 5 == 4)
-    target = data / "euroc_corners" / "target.yaml"
+    target = settings.data / "euroc_corners" / "target.yaml"
     models, topics = ["pinhole-radtan"] * 2, ["/cam0/image_raw", "/cam1/image_raw"]
     chain, record, _ = calibrate(WORK / "euroc", WORK / "euroc.csv", target, models, topics)
     train, _, _ = calibrate(WORK / "euroc-train", WORK / "euroc-train.csv", target, models, topics)
@@ -81,10 +81,10 @@ def publish_euroc_chain(chain):
     (WORK / "euroc-published-camchain.yaml").write_text(yaml.safe_dump(chain, default_flow_style=None))
 
 
-def tumvi(data):
+def tumvi(settings):
     """Two 16-bit images of a 195-degree lens, from nothing and with its published double sphere (board poses only)."""
-    folder = linked_folder("tumvi", data / "tumvi_cam0" / "images")
-    published = json.loads((data / "tumvi_cam0" / "tumvi_512_ds_calib.json").read_text())
+    folder = linked_folder("tumvi", settings.data / "tumvi_cam0" / "images")
+    published = json.loads((settings.data / "tumvi_cam0" / "tumvi_512_ds_calib.json").read_text())
     half = published["value0"]["intrinsics"][0]["intrinsics"]
     full = [half["xi"], half["alpha"], 2 * half["fx"], 2 * half["fy"], (half["cx"] + 0.5) * 2 - 0.5, (half["cy"] + 0.5) * 2 - 0.5]
     chain = {"cam0": {"cam_overlaps": [], "camera_model": "ds", "distortion_coeffs": [], "distortion_model": "none",
@@ -94,16 +94,16 @@ def tumvi(data):
     rows = []
     for label, flags in [("published lens, round 0", [*known, "--max-rounds", "0"]), ("published lens, all rounds", known),
                          ("from nothing, round 0", ["--max-rounds", "0"]), ("from nothing, all rounds", [])]:
-        _, record, _ = calibrate(folder, folder, data / "tumvi_cam0" / "target.yaml", ["ds-none"], ["/cam0/image_raw"],
+        _, record, _ = calibrate(folder, folder, settings.data / "tumvi_cam0" / "target.yaml", ["ds-none"], ["/cam0/image_raw"],
                                  *flags, "--export-corners")
         used = corners_per_image(pathlib.Path(f"{folder}-corners.csv"))
         rows.append([label, f"{rms(record):.3f}", ", ".join(map(str, used))])
     table(["", "rms [px], asked <= 0.15", "corners used in the two images of 144, asked >= 135"], rows)
 
 
-def deltille(data):
+def deltille(settings):
     """43 frames of a circular fisheye with a checkerboard; models of odd and even frames against each other."""
-    folder = linked_folder("deltille", data / "deltille_fisheye" / "cam0")
+    folder = linked_folder("deltille", settings.data / "deltille_fisheye" / "cam0")
     # The board in the images has 8 x 11 inner corners; the recording's own file says 7 x 10.
     target = WORK / "deltille-target.yaml"
     target.write_text("target_type: 'checkerboard'\ntargetCols: 8\ntargetRows: 11\n"

@@ -5,7 +5,10 @@ import subprocess
 
 import numpy as np
 
-from benchmarks.common import ROOT, WORK, calibrate, camera, difference, no_rounds, read_corners, rendered, rms, run, table, write_corners
+from benchmarks.common import (WORK, calibrate, camera, difference, no_rounds, read_corners, rendered, rms, run, table,
+                               test_program, write_corners)
+from benchmarks.detectors import RECORDINGS, ours
+from benchmarks.truth import Score, Truth
 
 
 def sample(_):
@@ -25,28 +28,19 @@ def sample(_):
 
 
 def wide(_):
-    """195-degree lens at 1224x1024, 100 views, a third blurred by motion, 30 % with a hand: corners by polar angle."""
-    bag, target, truth = rendered("bf5m", "--preset", "bf5m")
-    _, visible = read_corners(WORK / "bf5m-truth-corners.csv")
-    known = {(row["stamp_ns"], row["corner_id"]): row for row in visible}
+    """195-degree lens at 1224x1024, 100 views, a third blurred by motion, 30 % with a hand: round 0 and the rounds."""
+    recording = RECORDINGS[0]
+    truth = Truth(recording)
     rows = []
-    for label, flags in no_rounds("bf5m"):
-        _, record, seconds = calibrate(WORK / "bf5m", bag, target, ["ds-none"], ["/cam0/image_raw"], "--export-corners", *flags)
-        _, found = read_corners(WORK / "bf5m-corners.csv")
-        wrong, errors = 0, []
-        num_found = 0
-        for row in found:
-            true = known.get((row["stamp_ns"], row["corner_id"]))
-            error = np.hypot(float(row["u_px"]) - float(true["u_px"]), float(row["v_px"]) - float(true["v_px"])) if true else 1e9
-            if true is None or true["used"] == "0" or error > 2.0:
-                wrong += 1
-            else:
-                num_found += 1
-                errors.append(error)
-        total = sum(row["used"] == "1" for row in visible)
-        rows.append([label, f"{num_found} of {total} ({100.0 * num_found / total:.1f} %)", f"{wrong} ({100.0 * wrong / len(found):.2f} %)",
-                     f"{np.median(errors):.4f}, {np.sqrt(np.mean(np.square(errors))):.4f}", f"{rms(record):.4f}",
-                     difference(WORK / "bf5m-camchain.yaml", truth, "--max-angle-deg", 95), f"{seconds:.1f}"])
+    for label, key, flags in [("round 0", "round0", ["--max-rounds", "0"]), ("all rounds", "rounds", [])]:
+        found = ours(recording, key, *flags)
+        score = Score(truth, found.corners)
+        errors = score.found_error_px
+        total = np.sum(truth.asked)
+        rows.append([f"{recording.name}, {label}", f"{np.sum(score.found)} of {total} ({100.0 * np.sum(score.found) / total:.1f} %)",
+                     f"{score.num_false} ({100.0 * score.false_ratio:.2f} %)",
+                     f"{np.median(errors):.4f}, {np.sqrt(np.mean(np.square(errors))):.4f}", f"{rms(found.record):.4f}",
+                     difference(found.camchain, recording.files[2], "--max-angle-deg", 95), f"{found.wall_s:.1f}"])
     table(["", "visible corners found", "hidden, absent or > 2 px off", "error median, rms [px]", "residuals rms [px]",
            "true error of the model to 95 degrees, rms [px]", "whole run [s]"], rows)
 
@@ -75,7 +69,7 @@ def solver(_):
 
 def starts(_):
     """Starts without any guess: 200 simulated recordings per condition, lenses of 60 to 260 degrees, 20 pairs of models."""
-    test = next((ROOT / "build" / "ws" / "build").rglob("calibration_test"), None)
+    test = test_program("calibration_test")
     if test is None:
         print("skipped: the tests are not built; run scripts/test first\n")
         return

@@ -1,0 +1,101 @@
+"""Truth of a rendered recording with one camera, and corner files scored against it."""
+
+import csv
+import pathlib
+
+import numpy as np
+import yaml
+
+from benchmarks.common import read_corners
+
+MAX_ERROR_PX = 2.0  # a corner farther from its true place is a false one
+MIN_NEIGHBOUR_PX = 4.0  # corners whose nearest neighbour on the board is closer cannot be resolved and are not asked for
+BAND_DEG = 10
+
+
+class Truth:
+    """What simulate says of every corner within the image: arrays of equal length, by stamp, then corner id."""
+
+    def __init__(self, recording):
+        bag, target, _ = recording.files
+        base = str(bag.with_suffix(""))
+        self.corners_path = pathlib.Path(f"{base}-truth-corners.csv")
+        _, rows = read_corners(self.corners_path)
+        with open(f"{base}-truth-visibility.csv") as file:
+            seen = list(csv.DictReader(file))
+        self.stamp_ns = np.array([int(row["stamp_ns"]) for row in rows])
+        self.corner_id = np.array([int(row["corner_id"]) for row in rows])
+        self.px = np.array([[float(row["u_px"]), float(row["v_px"])] for row in rows])
+        self.cov_px2 = np.array([[[float(row["cov_uu"]), float(row["cov_uv"])], [float(row["cov_uv"]), float(row["cov_vv"])]]
+                                 for row in rows])
+        self.hidden = np.array([row["visibility"] == "hidden" for row in seen])
+        visible = np.array([row["visibility"] == "visible" for row in seen])
+        self.asked = visible & (np.array([float(row["neighbour_px"]) for row in seen]) >= MIN_NEIGHBOUR_PX)
+        self.polar_deg, self.azimuth_deg = self._angles(target, f"{base}-truth-poses.csv")
+        self.row_of = {key: row for row, key in enumerate(zip(self.stamp_ns.tolist(), self.corner_id.tolist()))}
+
+    def asked_within(self, band):
+        """Which corners are asked for and within a band of polar angle [degrees]."""
+        return self.asked & (self.polar_deg >= band[0]) & (self.polar_deg < band[1])
+
+    def _angles(self, target, poses_path):
+        """Polar angle from the camera's axis and azimuth of each corner, from the true poses."""
+        points = corner_points(yaml.safe_load(target.read_text()))
+        poses = {}
+        with open(poses_path) as file:
+            next(file)
+            for stamp, *values in csv.reader(file):  # T_target_cam: position, then the quaternion w, x, y, z
+                values = np.array(values, float)
+                poses[int(stamp)] = (values[:3], rotation(values[3:]))
+        rays = np.array([poses[stamp][1].T @ (points[corner] - poses[stamp][0])
+                         for stamp, corner in zip(self.stamp_ns.tolist(), self.corner_id.tolist())])
+        polar = np.degrees(np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]))
+        return polar, np.degrees(np.arctan2(rays[:, 1], rays[:, 0]))
+
+
+class Score:
+    """Corners of a file against the truth. `row`, `error_px`: of those that the truth has within the image."""
+
+    def __init__(self, truth, path):
+        _, corners = read_corners(path)
+        self.num_reported = len(corners)
+        rows = np.array([truth.row_of.get((int(corner["stamp_ns"]), int(corner["corner_id"])), -1) for corner in corners], int)
+        px = np.array([[float(corner["u_px"]), float(corner["v_px"])] for corner in corners]).reshape(-1, 2)
+        known = rows >= 0
+        self.row = rows[known]
+        self.error_px = np.hypot(*(px[known] - truth.px[self.row]).T)
+        hidden = truth.hidden[self.row]
+        off = ~hidden & (self.error_px > MAX_ERROR_PX)
+        self.num_absent, self.num_hidden, self.num_off = np.sum(~known), np.sum(hidden), np.sum(off)
+        right = ~hidden & ~off & truth.asked[self.row]
+        self.found = np.zeros(len(truth.px), bool)  # which of the truth's corners, of those asked for
+        self.found[self.row[right]] = True
+        self.found_error_px = self.error_px[right]
+
+    @property
+    def num_false(self):
+        return self.num_absent + self.num_hidden + self.num_off
+
+    @property
+    def false_ratio(self):
+        return self.num_false / max(1, self.num_reported)
+
+
+def bands(max_deg):
+    """(from, to) of the bands of polar angle up to that which holds max_deg."""
+    return [(start, start + BAND_DEG) for start in range(0, int(np.ceil(max_deg / BAND_DEG)) * BAND_DEG, BAND_DEG)]
+
+
+def corner_points(target):
+    """Corners of an AprilGrid in the target frame [m] by corner id, from its parsed YAML."""
+    size, pitch = target["tagSize"], target["tagSize"] * (1 + target["tagSpacing"])
+    x, y = ([index // 2 * pitch + index % 2 * size for index in range(2 * tags)]
+            for tags in (target["tagCols"], target["tagRows"]))
+    return np.array([[u, v, 0.0] for v in y for u in x])
+
+
+def rotation(quaternion):
+    w, x, y, z = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
