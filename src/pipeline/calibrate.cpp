@@ -1,5 +1,6 @@
 #include "tartan_calib/pipeline/calibrate.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "calibration_run.h"
@@ -51,7 +52,11 @@ CalibrationResult calibrate(const std::vector<CameraStream>& streams, const targ
     run.addCamera(corners, seconds.count());
   }
   run.solveTogether();
-  for (int round = 0; round < options.max_rounds && run.runRound(streams); ++round) {
+  if (listener.detection_solved) {
+    listener.detection_solved(run.current());
+  }
+  const int max_rounds = std::max(options.max_rounds, options.projections.empty() ? 0 : 1);
+  for (int round = 0; round < max_rounds && run.runRound(streams); ++round) {
   }
   return run.finish();
 }

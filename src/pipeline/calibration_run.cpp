@@ -39,6 +39,40 @@ std::string noUsableImages(const CameraCorners& corners, const target::Target& t
   return text;
 }
 
+/// Images of all cameras that are not in the solution.
+std::vector<CameraView> unusedImages(const std::vector<CameraCorners>& cameras, const calibration::Solution& solution) {
+  std::set<std::pair<int, std::int64_t>> in_solution;
+  for (const observation::View& view : solution.views) {
+    for (const CameraView& image : view.cameras) {
+      in_solution.emplace(image.camera_index, image.stamp_ns);
+    }
+  }
+  std::vector<CameraView> unused;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    for (CameraView image : cameras[i].images) {
+      image.camera_index = static_cast<int>(i);
+      if (in_solution.count({image.camera_index, image.stamp_ns}) > 0) {
+        continue;
+      }
+      for (Corner& corner : image.corners) {
+        corner.used = false;
+      }
+      unused.push_back(std::move(image));
+    }
+  }
+  return unused;
+}
+
+void countUsedImages(const calibration::Solution& solution, std::vector<CameraReport>& cameras) {
+  const auto is_used = [](const Corner& corner) { return corner.used; };
+  for (const observation::View& view : solution.views) {
+    for (const CameraView& image : view.cameras) {
+      const bool has_used = std::any_of(image.corners.begin(), image.corners.end(), is_used);
+      cameras[static_cast<std::size_t>(image.camera_index)].num_images_used += has_used ? 1 : 0;
+    }
+  }
+}
+
 }  // namespace
 
 CalibrationRun::CalibrationRun(std::size_t num_cameras, const target::Target& target, const CalibrateOptions& options,
@@ -146,37 +180,6 @@ void CalibrationRun::solve(const calibration::Problem& problem) {
   end();
 }
 
-void CalibrationRun::collectUnused() {
-  std::set<std::pair<int, std::int64_t>> in_solution;
-  for (const observation::View& view : result_.solution.views) {
-    for (const CameraView& image : view.cameras) {
-      in_solution.emplace(image.camera_index, image.stamp_ns);
-    }
-  }
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    for (CameraView& image : corners_[i].images) {
-      image.camera_index = static_cast<int>(i);
-      if (in_solution.count({image.camera_index, image.stamp_ns}) > 0) {
-        continue;
-      }
-      for (Corner& corner : image.corners) {
-        corner.used = false;
-      }
-      result_.unused_images.push_back(image);
-    }
-  }
-}
-
-void CalibrationRun::countUsedImages() {
-  const auto is_used = [](const Corner& corner) { return corner.used; };
-  for (const observation::View& view : result_.solution.views) {
-    for (const CameraView& image : view.cameras) {
-      const bool has_used = std::any_of(image.corners.begin(), image.corners.end(), is_used);
-      result_.cameras[static_cast<std::size_t>(image.camera_index)].num_images_used += has_used ? 1 : 0;
-    }
-  }
-}
-
 void CalibrationRun::solveTogether() {
   const calibration::Problem problem = startRig();
   if (listener_.rig_started) {
@@ -190,10 +193,13 @@ std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraSt
   const BoardPoses poses(solution, options_.approx_sync_ns);
   const detection::CornerRecovery recovery(target_, options_.recovery);
   const RoundStart start{solution, poses, target_points_};
+  const double half_window_m = options_.recovery.symmetry_window * target::symmetricHalfWidth(target_);
   std::vector<CameraCorners> recovered;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     begin(Stage::kRecover, static_cast<int>(i));
-    recovered.push_back(recoverCorners(streams[i], static_cast<int>(i), recovery, start, corners_[i], options_, listener_));
+    const ViewDetection views(solution.rig.cameras[i].camera, target_, options_.projections, options_.detector);
+    const RoundSearch search{options_.max_rounds > 0 ? &recovery : nullptr, views, half_window_m};
+    recovered.push_back(recoverCorners(streams[i], static_cast<int>(i), search, start, corners_[i], options_, listener_));
     end();
   }
   return recovered;
@@ -219,21 +225,34 @@ bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
   return !isSettled(summary);
 }
 
-CalibrationResult CalibrationRun::finish() {
-  begin(Stage::kStatistics);
+void CalibrationRun::describe(CalibrationResult& result) const {
   const std::vector<calibration::CameraStatistics> statistics =
-      calibration::residualStatistics(result_.solution, target_points_);
+      calibration::residualStatistics(result.solution, target_points_);
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const CameraCorners& corners = corners_[i];
-    result_.cameras.push_back({corners.topic, corners.num_images, corners.images.size(), 0, corners.counts, statistics[i]});
+    result.cameras.push_back({corners.topic, corners.num_images, corners.images.size(), 0, corners.counts, statistics[i]});
   }
-  collectUnused();
-  countUsedImages();
+  result.unused_images = unusedImages(corners_, result.solution);
+  countUsedImages(result.solution, result.cameras);
+}
+
+CalibrationResult CalibrationRun::finish() {
+  begin(Stage::kStatistics);
+  describe(result_);
   for (const std::string& warning : resultWarnings(result_)) {
     warn(warning);
   }
   end();
   return std::move(result_);
+}
+
+CalibrationResult CalibrationRun::current() const {
+  CalibrationResult result = result_;
+  describe(result);
+  for (const std::string& warning : resultWarnings(result)) {
+    result.warnings.push_back(warning);
+  }
+  return result;
 }
 
 }  // namespace tartan_calib::pipeline

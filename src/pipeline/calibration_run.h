@@ -26,6 +26,9 @@ class CalibrationRun {
   /// Statistics of the last solve, and everything else that the result tells.
   CalibrationResult finish();
 
+  /// The same as it stands now.
+  CalibrationResult current() const;
+
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -36,8 +39,7 @@ class CalibrationRun {
   calibration::Problem startRig();
   void solve(const calibration::Problem& problem);
   std::vector<CameraCorners> recoverAll(const std::vector<CameraStream>& streams);
-  void collectUnused();
-  void countUsedImages();
+  void describe(CalibrationResult& result) const;
 
   const target::Target& target_;
   const CalibrateOptions& options_;

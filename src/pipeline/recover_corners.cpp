@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "merge_corners.h"
 #include "stream_images.h"
 #include "tartan_calib/calibration/pose.h"
 
@@ -34,6 +35,11 @@ detection::BoardMap boardMap(const camera::Camera& camera, const geometry::Rigid
       camera.model);
 }
 
+std::vector<Corner> joined(std::vector<Corner> corners, const std::vector<Corner>& more) {
+  corners.insert(corners.end(), more.begin(), more.end());
+  return corners;
+}
+
 /// Adds corners of the earlier round that the new one does not have and that still fit: those that the solve used, and those
 /// close to their predictions.
 void keepEarlier(const std::vector<Corner>& earlier, const std::set<int>& used, const detection::BoardMap& map,
@@ -55,11 +61,10 @@ void keepEarlier(const std::vector<Corner>& earlier, const std::set<int>& used, 
 /// One camera's images in one round. Const: images are worked on by several threads.
 class ImageRecovery {
  public:
-  ImageRecovery(int camera_index, const detection::CornerRecovery& recovery, const RoundStart& start,
-                const CameraCorners& previous)
+  ImageRecovery(int camera_index, const RoundSearch& search, const RoundStart& start, const CameraCorners& previous)
       : camera_index_(camera_index),
         camera_(start.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera),
-        recovery_(recovery),
+        search_(search),
         start_(start) {
     for (const CameraView& image : previous.images) {
       earlier_[image.stamp_ns] = &image.corners;
@@ -74,28 +79,17 @@ class ImageRecovery {
   }
 
   CameraView recover(const StampedImage& image) const {
-    CameraView view{camera_index_, image.stamp_ns, {}};
-    const auto found = earlier_.find(image.stamp_ns);
-    const std::vector<Corner> earlier = found == earlier_.end() ? std::vector<Corner>() : *found->second;
-    auto T_cam_target = start_.poses.solved(camera_index_, image.stamp_ns);
-    const bool is_solved = T_cam_target.has_value();
-    if (!T_cam_target) {
-      T_cam_target = calibration::estimatePose(camera_, start_.target_points, earlier);
-    }
-    if (!T_cam_target) {
-      T_cam_target = start_.poses.guessed(camera_index_, image.stamp_ns);
-    }
-    if (!T_cam_target) {
-      view.corners = earlier;
+    CameraView view{camera_index_, image.stamp_ns, earlierIn(image.stamp_ns)};
+    if (search_.views.empty() && !poseOf(image.stamp_ns, view.corners)) {
       return view;
     }
     try {
       const cv::Mat gray = image.load();
-      if (gray.cols == camera_.width && gray.rows == camera_.height) {
-        view.corners = recoverFrom(gray, *T_cam_target, is_solved, earlier, usedIn(image.stamp_ns));
-      }
+      const bool is_calibrated_size = gray.cols == camera_.width && gray.rows == camera_.height;
+      view.corners = is_calibrated_size ? recoverFrom(gray, view) : std::vector<Corner>();
     } catch (const InputError&) {
       // Counted when the images were read for the first time.
+      view.corners.clear();
     }
     return view;
   }
@@ -114,24 +108,54 @@ class ImageRecovery {
     return found == used_.end() ? std::set<int>() : found->second;
   }
 
-  std::vector<Corner> recoverFrom(const cv::Mat& gray, const geometry::Rigid3& T_cam_target, bool is_solved,
-                                  const std::vector<Corner>& earlier, const std::set<int>& used) const {
-    detection::BoardMap map = boardMap(camera_, T_cam_target);
-    std::vector<Corner> corners = recovery_.recover(gray, map);
+  std::vector<Corner> earlierIn(std::int64_t stamp_ns) const {
+    const auto found = earlier_.find(stamp_ns);
+    return found == earlier_.end() ? std::vector<Corner>() : *found->second;
+  }
+
+  /// From the solution, else from the corners, else from the views next in time.
+  std::optional<geometry::Rigid3> poseOf(std::int64_t stamp_ns, const std::vector<Corner>& corners) const {
+    auto T_cam_target = start_.poses.solved(camera_index_, stamp_ns);
+    if (!T_cam_target) {
+      T_cam_target = calibration::estimatePose(camera_, start_.target_points, corners);
+    }
+    return T_cam_target ? T_cam_target : start_.poses.guessed(camera_index_, stamp_ns);
+  }
+
+  std::vector<Corner> recoverFrom(const cv::Mat& gray, const CameraView& earlier) const {
+    std::vector<Corner> seen = search_.views.detect(gray);
+    const auto T_cam_target = poseOf(earlier.stamp_ns, joined(earlier.corners, seen));
+    if (!T_cam_target) {
+      return earlier.corners;
+    }
+    seen = joined(seen, search_.views.detectRectified(gray, *T_cam_target));
+    detection::BoardMap map = boardMap(camera_, *T_cam_target);
+    std::vector<Corner> corners = earlier.corners;
+    if (search_.recovery != nullptr) {
+      corners = recoverWith(gray, start_.poses.solved(camera_index_, earlier.stamp_ns).has_value(), map);
+      keepEarlier(earlier.corners, usedIn(earlier.stamp_ns), map, start_.target_points, corners);
+    }
+    seen = refineInImage(gray, map, start_.target_points, search_.half_window_m, seen);
+    mergeCorners(seen, map, start_.target_points, corners);
+    return corners;
+  }
+
+  /// Replaces a guessed map by a better one.
+  std::vector<Corner> recoverWith(const cv::Mat& gray, bool is_solved, detection::BoardMap& map) const {
+    std::vector<Corner> corners = search_.recovery->recover(gray, map);
     if (!is_solved && corners.size() >= kMinPoseCorners) {
       // The pose was a guess; what was found with it gives a better one, which finds more.
       if (const auto better = calibration::estimatePose(camera_, start_.target_points, corners)) {
         map = boardMap(camera_, *better);
-        corners = recovery_.recover(gray, map);
+        corners = search_.recovery->recover(gray, map);
       }
     }
-    keepEarlier(earlier, used, map, start_.target_points, corners);
     return corners;
   }
 
   int camera_index_;
   const camera::Camera& camera_;
-  const detection::CornerRecovery& recovery_;
+  const RoundSearch& search_;
   const RoundStart& start_;
   std::map<std::int64_t, const std::vector<Corner>*> earlier_;
   std::map<std::int64_t, std::set<int>> used_;  ///< by the solution, ids by image
@@ -139,10 +163,10 @@ class ImageRecovery {
 
 }  // namespace
 
-CameraCorners recoverCorners(const CameraStream& stream, int camera_index, const detection::CornerRecovery& recovery,
+CameraCorners recoverCorners(const CameraStream& stream, int camera_index, const RoundSearch& search,
                              const RoundStart& start, const CameraCorners& previous, const CalibrateOptions& options,
                              const Listener& listener) {
-  const ImageRecovery images(camera_index, recovery, start, previous);
+  const ImageRecovery images(camera_index, search, start, previous);
   CameraCorners corners = previous;
   corners.images.clear();
   streamImages<CameraView>(

@@ -17,6 +17,7 @@
 #include "tartan_calib/error.h"
 #include "tartan_calib/observation/observation.h"
 #include "tartan_calib/pipeline/camera_stream.h"
+#include "tartan_calib/pipeline/virtual_view.h"
 #include "tartan_calib/target/target.h"
 
 namespace tartan_calib::pipeline {
@@ -33,6 +34,8 @@ struct CalibrateOptions {
   /// After the first solve the images are gone through again with the model, until fewer than 1 % of the corners are gained
   /// and the model moves less than 0.02 px, at most so often; 0: not at all, as Kalibr.
   int max_rounds = 5;
+  /// Views in which every round detects the board too, remapped with its model; where there are no rounds, one such pass.
+  Projections projections;
   detection::RecoveryOptions recovery;
   calibration::SolveOptions solve;
 };
@@ -79,23 +82,6 @@ struct RoundSummary {
   double model_change_px = 0.0;  ///< rms over the image, of the camera that changed most, common rotation removed
 };
 
-/// Told what happens while it happens, always on the thread that called. Any member may stay empty.
-struct Listener {
-  std::function<void(const Progress&)> progress;
-  std::function<void(int camera_index, const CameraCorners&)> camera_detected;
-  std::function<void(int camera_index, const camera::Camera&)> camera_started;
-  std::function<void(const calibration::Problem&)> rig_started;
-  std::function<void(const RoundSummary&)> round_finished;
-  std::function<void(const std::string&)> warning;  ///< the same texts are in CalibrationResult::warnings
-  std::function<bool()> is_cancelled;               ///< asked once per image, stage and iteration of the solve
-};
-
-/// The listener asked to stop.
-class Cancelled : public Error {
- public:
-  using Error::Error;
-};
-
 /// What is known about one camera besides its calibration.
 struct CameraReport {
   std::string topic;
@@ -124,6 +110,24 @@ struct CalibrationResult {
   std::vector<RoundSummary> rounds;
   std::vector<std::string> warnings;
   std::vector<StageTime> times;  ///< in the order in which the stages ended
+};
+
+/// Told what happens while it happens, always on the thread that called. Any member may stay empty.
+struct Listener {
+  std::function<void(const Progress&)> progress;
+  std::function<void(int camera_index, const CameraCorners&)> camera_detected;
+  std::function<void(int camera_index, const camera::Camera&)> camera_started;
+  std::function<void(const calibration::Problem&)> rig_started;
+  std::function<void(const CalibrationResult&)> detection_solved;  ///< what comes out where there are no rounds
+  std::function<void(const RoundSummary&)> round_finished;
+  std::function<void(const std::string&)> warning;  ///< the same texts are in CalibrationResult::warnings
+  std::function<bool()> is_cancelled;               ///< asked once per image, stage and iteration of the solve
+};
+
+/// The listener asked to stop.
+class Cancelled : public Error {
+ public:
+  using Error::Error;
 };
 
 /// Corners of all images of one camera, detected on options.num_threads threads. Images are streamed: only a few per thread

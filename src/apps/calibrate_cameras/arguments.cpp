@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "calibrate_cameras/flags.h"
+#include "calibrate_cameras/projection_flags.h"
 #include "calibrate_cameras/rig_file.h"
 #include "common/program.h"
 
@@ -90,6 +91,7 @@ pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
   if (options.max_rounds < 0) {
     throw UsageError("--max-rounds must not be negative; 0 leaves the rounds out");
   }
+  options.projections = projectionsFrom(flags);
   solve.linear_solver = linearSolver(flags.get<std::string>("linear-solver", "auto"));
   applyFix(flags.get<Words>("fix"), solve);
   return options;

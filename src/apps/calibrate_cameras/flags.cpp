@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "common/program.h"
@@ -26,10 +27,13 @@ po::options_description kalibrOptions() {
 }
 
 po::options_description ownOptions() {
+  const auto columns = [] { return po::value<std::vector<double>>()->multitoken()->composing(); };
   po::options_description options;
   options.add_options()("init", po::value<std::string>(), "")("fix", po::value<Words>()->multitoken()->composing(), "")(
       "estimate-board-warp", "")("linear-solver", po::value<std::string>(), "")("threads", po::value<int>(), "")(
-      "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "")("max-rounds", po::value<int>(), "");
+      "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "")("max-rounds", po::value<int>(), "")(
+      "projections", po::value<Words>()->multitoken(), "")("fovs", columns(), "")("poses", columns(), "")("resolutions",
+                                                                                                          columns(), "");
   return options;
 }
 
@@ -97,15 +101,16 @@ Words expanded(const Words& words) {
   return result;
 }
 
-/// Of a flag that is given more than once the last one counts, except for --fix, which collects.
+/// Of a flag that is given more than once the last one counts, except for those that collect.
 void keepLast(std::vector<po::option>& options) {
+  const std::set<std::string> collecting = {"fix", "fovs", "poses", "resolutions"};
   std::map<std::string, std::size_t> last;
   for (std::size_t i = 0; i < options.size(); ++i) {
     last[options[i].string_key] = i;
   }
   std::vector<po::option> kept;
   for (std::size_t i = 0; i < options.size(); ++i) {
-    if (options[i].string_key == "fix" || last.at(options[i].string_key) == i) {
+    if (collecting.count(options[i].string_key) > 0 || last.at(options[i].string_key) == i) {
       kept.push_back(options[i]);
     }
   }
