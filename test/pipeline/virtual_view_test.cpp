@@ -46,7 +46,7 @@ TEST(PinholeView, ReachesItsAnglesInTheOutermostPixels) {
 }
 
 TEST(CubeViews, ShowEveryPixelOfAWideLens) {
-  const auto pinholes = cubeViews({});
+  const auto pinholes = cubeViews({90.0 * kDegree, 90.0 * kDegree, 200, 200});
   std::vector<VirtualView> views;
   for (const VirtualPinhole& pinhole : pinholes) {
     views.emplace_back(wideCamera(), pinhole);
@@ -66,7 +66,7 @@ TEST(VirtualView, TakesAPixelThereAndBackThroughEveryModel) {
   for (const std::string& name : camera::modelNames()) {
     const camera::Camera camera{camera::startModel(camera::modelByName(name), 300.0, {319.5, 239.5}), 640, 480};
     int num_pixels = 0;
-    for (const VirtualPinhole& pinhole : cubeViews({})) {
+    for (const VirtualPinhole& pinhole : cubeViews({90.0 * kDegree, 90.0 * kDegree, 200, 200})) {
       const VirtualView view(camera, pinhole);
       for (const Eigen::Vector2d& px : imagePixels(camera)) {
         const auto view_px = view.toView(px);

@@ -31,6 +31,12 @@ Start from a calibration
 Corners
   --max-rounds N            go through the images again with the calibrated model and look where it says corners are, at
                             most so often (5); 0: only the tags that are detected without a model, as Kalibr
+  --projections P [P ...]   also detect in virtual views, remapped with the model: cube (five faces), homography (rectified
+                            on the predicted board), pinhole (one view for each, described by a column of the next three)
+  --fovs H .. --fovs V ..   degrees of each view (90 90)
+  --poses X .. --poses Z .. degrees about x, then z (90 0: towards -y; 0 0: ahead)
+  --resolutions H .. --resolutions W ..
+                            pixels of each view (1000 1000)
 
 Solver
   --estimate-board-warp     also fit the curvature of the board
