@@ -8,6 +8,14 @@
 
 namespace tartan_calib::detection {
 
+/// What to look for around a predicted corner.
+struct CornerSearch {
+  XCornerTemplate expected;
+  double half_window_m = 0.0;  ///< of the template, and for the refinement
+  double radius_px = 0.0;
+  double min_correlation = 0.0;
+};
+
 /// A corner of the board that should be in the image, and what was found there.
 struct CornerCandidate {
   int corner_id = -1;

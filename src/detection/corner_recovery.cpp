@@ -18,6 +18,11 @@ constexpr double kSecondRadius_px = 1.5;
 /// Opposite corners alternate in polarity; beyond this share of the distance to the next one the search could meet it.
 constexpr double kMaxRadiusShare = 0.4;
 
+/// Where something else begins within the window, such as the lens' rim or a hand, half of it may do.
+constexpr double kInnerShare = 0.5;
+/// A smaller window shows less, which must look better.
+constexpr double kInnerCorrelation = 0.9;
+
 /// Distance [px] from a corner to the nearest of its four neighbours on the lattice.
 double nearestNeighbour(const std::vector<std::optional<Eigen::Vector2d>>& predicted, const target::Lattice& lattice,
                         int row, int col) {
@@ -117,8 +122,17 @@ void CornerRecovery::find(const cv::Mat& gray, const BoardMap& map, const Eigen:
   XCornerTemplate expected = candidate.expected;
   expected.px += expected_shift_px;
   const double radius = std::min(radius_px, kMaxRadiusShare * candidate.neighbour_px);
-  const auto match = searchXCorner(gray, expected, radius);
-  if (!match || match->correlation < options_.min_correlation || match->contrast < options_.min_contrast) {
+  findWithin(gray, map, {expected, half_window_m_, radius, options_.min_correlation}, candidate);
+  if (!candidate.isFound()) {
+    const double min_correlation = std::max(options_.min_correlation, kInnerCorrelation);
+    findWithin(gray, map, {innerTemplate(expected), kInnerShare * half_window_m_, radius, min_correlation}, candidate);
+  }
+}
+
+void CornerRecovery::findWithin(const cv::Mat& gray, const BoardMap& map, const CornerSearch& search,
+                                CornerCandidate& candidate) const {
+  const auto match = searchXCorner(gray, search.expected, search.radius_px);
+  if (!match || match->correlation < search.min_correlation || match->contrast < options_.min_contrast) {
     return;
   }
   const Eigen::Vector2d corner_m = corner_points_[static_cast<std::size_t>(candidate.corner_id)].head<2>();
@@ -128,7 +142,7 @@ void CornerRecovery::find(const cv::Mat& gray, const BoardMap& map, const Eigen:
     return px ? Eigen::Vector2d(*px - origin_px) : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   };
   RefineOptions refine;
-  refine.half_window = half_window_m_;
+  refine.half_window = search.half_window_m;
   const auto refined = refineBySymmetry(gray, match->px, offset_map, refine);
   if (refined) {
     candidate.match = match;

@@ -1,39 +1,9 @@
 #include "tag_payload.h"
 
-#include <cmath>
-
 #include "bilinear.h"
+#include "correlation.h"
 
 namespace tartan_calib::detection {
-namespace {
-
-/// Pearson's correlation of pairs.
-class Correlation {
- public:
-  void add(double x, double y) {
-    ++count_;
-    x_ += x;
-    y_ += y;
-    xx_ += x * x;
-    yy_ += y * y;
-    xy_ += x * y;
-  }
-  double value() const {
-    const double product = (count_ * xx_ - x_ * x_) * (count_ * yy_ - y_ * y_);
-    return product > 0.0 ? (count_ * xy_ - x_ * y_) / std::sqrt(product) : 0.0;
-  }
-
- private:
-  double count_ = 0.0;
-  double x_ = 0.0;
-  double y_ = 0.0;
-  double xx_ = 0.0;
-  double yy_ = 0.0;
-  double xy_ = 0.0;
-};
-
-}  // namespace
-
 TagPayload::TagPayload(const target::AprilGrid& grid)
     : grid_(grid), family_(target::tagFamily(grid.family)), corner_points_(target::cornerPoints(grid)) {}
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bilinear.h"
+#include "correlation.h"
 
 namespace tartan_calib::detection {
 namespace {
@@ -21,6 +22,12 @@ std::optional<double> imageLength(const BoardMap& map, const Eigen::Vector2d& co
   }
   return 0.5 * (*to - *from).norm();
 }
+
+/// Where the border of the image cuts the pattern, so much of it must be left.
+constexpr double kMinSeenShare = 0.5;
+/// An uphill walk that ends on such a match has found the corner; a lesser hill need not be the highest.
+constexpr double kCertainCorrelation = 0.9;
+constexpr double kFineStep_px = 0.5;
 
 double softSign(double value, double width) { return std::clamp(value / width, -1.0, 1.0); }
 
@@ -53,31 +60,37 @@ std::optional<XCornerTemplate> xCornerTemplate(const BoardMap& map, const Eigen:
   return corner;
 }
 
+XCornerTemplate innerTemplate(const XCornerTemplate& corner) {
+  constexpr int kSide = 2 * kSamplesPerQuadrantSide;
+  constexpr int kFirst = kSamplesPerQuadrantSide / 2;
+  XCornerTemplate inner;
+  inner.px = corner.px;
+  for (int row = kFirst; row < kSide - kFirst; ++row) {
+    for (int col = kFirst; col < kSide - kFirst; ++col) {
+      const auto i = static_cast<std::size_t>(row * kSide + col);
+      inner.offsets_px.push_back(corner.offsets_px[i]);
+      inner.pattern.push_back(corner.pattern[i]);
+    }
+  }
+  return inner;
+}
+
 std::optional<XCornerMatch> matchXCorner(const cv::Mat& gray, const XCornerTemplate& corner, const Eigen::Vector2d& px) {
-  double sum = 0.0;
-  double sum_squares = 0.0;
-  double cross = 0.0;
-  double pattern_squares = 0.0;
+  Correlation values;
   for (std::size_t i = 0; i < corner.offsets_px.size(); ++i) {
     const Eigen::Vector2d at = px + corner.offsets_px[i];
-    if (!canSample(gray, at.x(), at.y())) {
-      return std::nullopt;
+    if (canSample(gray, at.x(), at.y())) {
+      values.add(corner.pattern[i], sampleBilinear<std::uint8_t>(gray, at.x(), at.y()));
     }
-    const double value = sampleBilinear<std::uint8_t>(gray, at.x(), at.y());
-    sum += value;
-    sum_squares += value * value;
-    cross += corner.pattern[i] * value;  // the pattern's mean is 0, so the grey values' mean drops out
-    pattern_squares += corner.pattern[i] * corner.pattern[i];
   }
-  const double variation = sum_squares - sum * sum / static_cast<double>(corner.offsets_px.size());
-  XCornerMatch match;
-  match.px = px;
-  match.contrast = 2.0 * cross / pattern_squares;
-  match.correlation = variation > 0.0 ? cross / std::sqrt(variation * pattern_squares) : 0.0;
-  return match;
+  if (values.count() < kMinSeenShare * static_cast<double>(corner.offsets_px.size())) {
+    return std::nullopt;
+  }
+  return XCornerMatch{px, values.value(), 2.0 * values.slope()};
 }
 
 std::optional<XCornerMatch> searchXCorner(const cv::Mat& gray, const XCornerTemplate& corner, double radius_px) {
+  const auto inRadius = [&](const Eigen::Vector2d& px) { return (px - corner.px).norm() <= radius_px; };
   std::optional<XCornerMatch> best;
   const auto consider = [&](const Eigen::Vector2d& px) {
     const auto match = matchXCorner(gray, corner, px);
@@ -85,23 +98,34 @@ std::optional<XCornerMatch> searchXCorner(const cv::Mat& gray, const XCornerTemp
       best = match;
     }
   };
-  const int reach = static_cast<int>(std::ceil(radius_px));
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      if (Eigen::Vector2d(dx, dy).norm() <= radius_px) {
-        consider(corner.px + Eigen::Vector2d(dx, dy));
+  const auto considerAround = [&](double step_px) {
+    const Eigen::Vector2d centre = best ? best->px : corner.px;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Eigen::Vector2d px = centre + step_px * Eigen::Vector2d(dx, dy);
+        if ((dx != 0 || dy != 0) && inRadius(px)) {
+          consider(px);
+        }
+      }
+    }
+  };
+  consider(corner.px);
+  for (double before = -2.0; best && best->correlation > before;) {  // uphill
+    before = best->correlation;
+    considerAround(1.0);
+  }
+  if (!best || best->correlation < kCertainCorrelation) {
+    const int reach = static_cast<int>(std::ceil(radius_px));
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx) {
+        const Eigen::Vector2d px = corner.px + Eigen::Vector2d(dx, dy);
+        if (inRadius(px)) {
+          consider(px);
+        }
       }
     }
   }
-  if (!best) {
-    return best;
-  }
-  const Eigen::Vector2d coarse = best->px;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      consider(coarse + 0.5 * Eigen::Vector2d(dx, dy));
-    }
-  }
+  considerAround(kFineStep_px);
   return best;
 }
 

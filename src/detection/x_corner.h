@@ -29,7 +29,10 @@ struct XCornerMatch {
 std::optional<XCornerTemplate> xCornerTemplate(const BoardMap& map, const Eigen::Vector2d& corner_m, double half_width_m,
                                                int dark_diagonal);
 
-/// Compares at one position. Empty where a sample lies outside of the image.
+/// The same corner, looked at within half the width.
+XCornerTemplate innerTemplate(const XCornerTemplate& corner);
+
+/// Compares at one position, with the samples inside of the image. Empty where they are too few.
 std::optional<XCornerMatch> matchXCorner(const cv::Mat& gray, const XCornerTemplate& corner, const Eigen::Vector2d& px);
 
 /// The position of best correlation within `radius_px` of the prediction, to half a pixel.

@@ -12,6 +12,7 @@
 namespace tartan_calib::detection {
 
 struct CornerCandidate;
+struct CornerSearch;
 class TagPayload;
 
 struct RecoveryOptions {
@@ -40,6 +41,7 @@ class CornerRecovery {
   std::vector<CornerCandidate> predict(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
   void find(const cv::Mat& gray, const BoardMap& map, const Eigen::Vector2d& expected_shift_px, double radius_px,
             CornerCandidate& candidate) const;
+  void findWithin(const cv::Mat& gray, const BoardMap& map, const CornerSearch& search, CornerCandidate& candidate) const;
   void findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<CornerCandidate>& candidates) const;
 
   target::Target target_;
