@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t kNumModels = std::variant_size_v<CameraModel>;
 
-template <std::size_t... Index>
-std::array<CameraModel, sizeof...(Index)> makeAll(std::index_sequence<Index...> /*indices*/) {
+template <std::size_t... kIndex>
+std::array<CameraModel, sizeof...(kIndex)> makeAll(std::index_sequence<kIndex...> /*indices*/) {
   return {
-      CameraModel(std::in_place_index<Index>, std::variant_alternative_t<Index, CameraModel>::start(1.0, {0.0, 0.0}))...};
+      CameraModel(std::in_place_index<kIndex>, std::variant_alternative_t<kIndex, CameraModel>::start(1.0, {0.0, 0.0}))...};
 }
 
 /// One of each kind, in the variant's order.

@@ -179,7 +179,7 @@ void bendMaps(const BoardSearch& search, std::vector<PlacedTag>& tags) {
     const int row = tag.tag_index / search.grid.tag_cols;
     const int col = tag.tag_index % search.grid.tag_cols;
     // Nodes i, j = -1 and 2 belong to the neighbours; as printed, j goes down.
-    const auto pixelAt = [&](int i, int j) -> std::optional<Eigen::Vector2d> {
+    const auto pixel_at = [&](int i, int j) -> std::optional<Eigen::Vector2d> {
       const int col_step = i < 0 ? -1 : i / 2;
       const int row_step = j < 0 ? 1 : -(j / 2);
       const PlacedTag* owner = table.find(row + row_step, col + col_step);
@@ -191,7 +191,7 @@ void bendMaps(const BoardSearch& search, std::vector<PlacedTag>& tags) {
       const std::size_t corner = bottom ? (right ? 2U : 3U) : (right ? 1U : 0U);
       return owner->saddle_index[corner] < 0 ? std::nullopt : std::optional<Eigen::Vector2d>(owner->corners_px[corner]);
     };
-    maps.push_back(bentMap(search.grid.tag_spacing_ratio, tag.corners_px, pixelAt));
+    maps.push_back(bentMap(search.grid.tag_spacing_ratio, tag.corners_px, pixel_at));
   }
   for (std::size_t i = 0; i < tags.size(); ++i) {
     tags[i].map = maps[i];

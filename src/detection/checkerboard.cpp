@@ -104,11 +104,11 @@ bool isNearBorder(const cv::Mat& gray, const Eigen::Vector2d& px, double distanc
 /// Lattices as large as they get. Where one has grown into another, only the first remains.
 std::vector<SaddleLattice> findLattices(const cv::Mat& gray, const std::vector<Saddle>& saddles, std::size_t min_corners) {
   std::vector<bool> taken(saddles.size(), false);
-  const auto isTaken = [&taken](const LatticeNode& node) { return taken[static_cast<std::size_t>(node.saddle_index)]; };
+  const auto is_taken = [&taken](const LatticeNode& node) { return taken[static_cast<std::size_t>(node.saddle_index)]; };
   std::vector<SaddleLattice> lattices;
   for (const SaddleLattice& start : growLattices(gray, saddles)) {
     const auto& nodes = start.nodes();
-    if (nodes.size() < min_corners || std::any_of(nodes.begin(), nodes.end(), isTaken)) {
+    if (nodes.size() < min_corners || std::any_of(nodes.begin(), nodes.end(), is_taken)) {
       continue;
     }
     lattices.push_back(extendLattice(gray, saddles, start));

@@ -57,11 +57,11 @@ class OrderedCentres {
 
  private:
   template <typename CentreAt>
-  static OrderedCentres reordered(int rows, int cols, const CentreAt& centreAt) {
+  static OrderedCentres reordered(int rows, int cols, const CentreAt& centre_at) {
     Centres centres;
     for (int row = 0; row < rows; ++row) {
       for (int col = 0; col < cols; ++col) {
-        centres.push_back(centreAt(row, col));
+        centres.push_back(centre_at(row, col));
       }
     }
     return {rows, cols, std::move(centres)};

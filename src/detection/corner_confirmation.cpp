@@ -37,10 +37,10 @@ std::vector<bool> confirmedTags(const cv::Mat& gray, const BoardMap& map, const 
 void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid, const TagPayload& payload,
                      std::vector<CornerCandidate>& candidates) {
   const std::vector<bool> confirmed = confirmedTags(gray, map, grid, payload, candidates);
-  const auto onConfirmedTag = [&](std::size_t i) { return confirmed[tagOf(grid, candidates[i])]; };
+  const auto on_confirmed_tag = [&](std::size_t i) { return confirmed[tagOf(grid, candidates[i])]; };
   std::vector<double> contrasts;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].isFound() && onConfirmedTag(i)) {
+    if (candidates[i].isFound() && on_confirmed_tag(i)) {
       contrasts.push_back(candidates[i].match->contrast);
     }
   }
@@ -52,8 +52,8 @@ void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::Apr
       continue;
     }
     const bool vouched =
-        candidate.match->correlation >= kUnconfirmedCorrelation && neighbourShift(candidates, i, onConfirmedTag);
-    if (candidate.match->contrast < least_contrast || (!onConfirmedTag(i) && !vouched)) {
+        candidate.match->correlation >= kUnconfirmedCorrelation && neighbourShift(candidates, i, on_confirmed_tag);
+    if (candidate.match->contrast < least_contrast || (!on_confirmed_tag(i) && !vouched)) {
       unconfirmed.push_back(i);
     }
   }

@@ -145,14 +145,14 @@ SaddleLattice latticeOf(const std::vector<int>& members, const std::vector<Place
     const Place& place = places[static_cast<std::size_t>(i)];
     nodes.push_back({place.column - min_column, place.row - min_row, i});
   }
-  const auto samePlace = [](const LatticeNode& a, const LatticeNode& b) { return a.row == b.row && a.column == b.column; };
+  const auto same_place = [](const LatticeNode& a, const LatticeNode& b) { return a.row == b.row && a.column == b.column; };
   std::sort(nodes.begin(), nodes.end(), [](const LatticeNode& a, const LatticeNode& b) {
     return std::tie(a.row, a.column, a.saddle_index) < std::tie(b.row, b.column, b.saddle_index);
   });
   std::vector<LatticeNode> unique;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const bool shared =
-        (i > 0 && samePlace(nodes[i - 1], nodes[i])) || (i + 1 < nodes.size() && samePlace(nodes[i], nodes[i + 1]));
+        (i > 0 && same_place(nodes[i - 1], nodes[i])) || (i + 1 < nodes.size() && same_place(nodes[i], nodes[i + 1]));
     if (!shared) {
       unique.push_back(nodes[i]);
     }

@@ -48,12 +48,12 @@ std::vector<TagFace> readDarkFaces(const BoardSearch& search, const SaddleLattic
     if (!corners || !lattice.isDarkFace(node.column, node.row)) {
       continue;
     }
-    const auto pixelAt = [&](int i, int j) {
+    const auto pixel_at = [&](int i, int j) {
       const int index = lattice.saddleIndexAt(node.column + i, node.row + j);
       return index < 0 ? std::nullopt : std::optional<Eigen::Vector2d>(search.saddles[static_cast<std::size_t>(index)].px);
     };
     TagFace face{node.column, node.row,
-                 *corners,    bentMap(search.grid.tag_spacing_ratio, pixelsOf(search, *corners), pixelAt),
+                 *corners,    bentMap(search.grid.tag_spacing_ratio, pixelsOf(search, *corners), pixel_at),
                  {},          {}};
     readFace(search, face);
     faces.push_back(std::move(face));

@@ -43,16 +43,16 @@ inline bool agreesWithPlace(const BoardSearch& search, const TagReading& reading
 }
 
 /// Map of a square of a lattice, its corners (0, 0), (1, 0), (1, 1), (0, 1), bent towards the nodes around it.
-/// `pixelAt(i, j)`, i and j from -1 to 2, gives the pixel of such a node or nothing.
+/// `pixel_at(i, j)`, i and j from -1 to 2, gives the pixel of such a node or nothing.
 template <typename PixelAt>
-TagMap bentMap(double gap, const std::array<Eigen::Vector2d, 4>& corners_px, const PixelAt& pixelAt) {
+TagMap bentMap(double gap, const std::array<Eigen::Vector2d, 4>& corners_px, const PixelAt& pixel_at) {
   TagMap map(corners_px);
   const std::array<double, 4> position = {-gap, 0.0, 1.0, 1.0 + gap};
   std::vector<TagPoint> around;
   for (int j = -1; j <= 2; ++j) {
     for (int i = -1; i <= 2; ++i) {
       const bool is_corner = (i == 0 || i == 1) && (j == 0 || j == 1);
-      const std::optional<Eigen::Vector2d> px = is_corner ? std::nullopt : std::optional<Eigen::Vector2d>(pixelAt(i, j));
+      const std::optional<Eigen::Vector2d> px = is_corner ? std::nullopt : std::optional<Eigen::Vector2d>(pixel_at(i, j));
       if (px) {
         around.push_back({{position[static_cast<std::size_t>(i + 1)], position[static_cast<std::size_t>(j + 1)]}, *px});
       }

@@ -128,14 +128,14 @@ std::vector<Saddle> suppressDuplicates(std::vector<Saddle> saddles, const cv::Si
   const int cells_x = size.width / kCell_px + 3;
   const int cells_y = size.height / kCell_px + 3;
   std::vector<std::vector<std::size_t>> cells(static_cast<std::size_t>(cells_x * cells_y));
-  const auto cellIndex = [&](const Eigen::Vector2d& px, int dx, int dy) {
+  const auto cell_index = [&](const Eigen::Vector2d& px, int dx, int dy) {
     return static_cast<std::size_t>((static_cast<int>(px.y()) / kCell_px + 1 + dy) * cells_x +
                                     static_cast<int>(px.x()) / kCell_px + 1 + dx);
   };
   std::vector<Saddle> kept;
-  const auto isTaken = [&](const Saddle& saddle) {
+  const auto is_taken = [&](const Saddle& saddle) {
     for (int neighbour = 0; neighbour < 9; ++neighbour) {
-      for (const std::size_t other : cells[cellIndex(saddle.px, neighbour % 3 - 1, neighbour / 3 - 1)]) {
+      for (const std::size_t other : cells[cell_index(saddle.px, neighbour % 3 - 1, neighbour / 3 - 1)]) {
         const double radius_px = kSuppressionRadius_px * std::max(kept[other].scale_px, saddle.scale_px);
         if ((kept[other].px - saddle.px).squaredNorm() < radius_px * radius_px) {
           return true;
@@ -145,8 +145,8 @@ std::vector<Saddle> suppressDuplicates(std::vector<Saddle> saddles, const cv::Si
     return false;
   };
   for (const Saddle& saddle : saddles) {
-    if (!isTaken(saddle)) {
-      cells[cellIndex(saddle.px, 0, 0)].push_back(kept.size());
+    if (!is_taken(saddle)) {
+      cells[cell_index(saddle.px, 0, 0)].push_back(kept.size());
       kept.push_back(saddle);
     }
   }

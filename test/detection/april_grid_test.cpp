@@ -26,7 +26,7 @@ camera::Camera vga() { return test_support::pinholeCamera(640, 480, 500.0); }
 
 /// Tags of the 6 x 6 board that are in the picture with all their corners, `margin_px` away from its border.
 int countVisibleTags(const std::vector<TrueCorner>& truth, const cv::Size& size, double margin_px) {
-  const auto isVisible = [&](int id) {
+  const auto is_visible = [&](int id) {
     const auto corner = std::find_if(truth.begin(), truth.end(), [id](const TrueCorner& t) { return t.corner_id == id; });
     return corner != truth.end() && 0.5 + std::min({corner->px.x(), corner->px.y(), size.width - 1 - corner->px.x(),
                                                     size.height - 1 - corner->px.y()}) >=
@@ -35,7 +35,7 @@ int countVisibleTags(const std::vector<TrueCorner>& truth, const cv::Size& size,
   int count = 0;
   for (int tag = 0; tag < 36; ++tag) {
     const auto ids = target::tagCornerIds(target::AprilGrid{}, tag);
-    count += std::all_of(ids.begin(), ids.end(), isVisible) ? 1 : 0;
+    count += std::all_of(ids.begin(), ids.end(), is_visible) ? 1 : 0;
   }
   return count;
 }

@@ -154,8 +154,8 @@ TEST(Checkerboard, isFoundInClutter) {
   std::mt19937 random(3);
   BoardScene scene(test_support::pinholeCamera(640, 480, 500.0));
   for (int k = 0; k < 400; ++k) {
-    const auto upTo = [&random](int limit) { return static_cast<int>(random() % static_cast<unsigned>(limit)); };
-    cv::rectangle(scene.grey(), cv::Rect(upTo(620), upTo(460), 5 + upTo(40), 5 + upTo(40)), cv::Scalar(upTo(256)),
+    const auto up_to = [&random](int limit) { return static_cast<int>(random() % static_cast<unsigned>(limit)); };
+    cv::rectangle(scene.grey(), cv::Rect(up_to(620), up_to(460), 5 + up_to(40), 5 + up_to(40)), cv::Scalar(up_to(256)),
                   cv::FILLED);
   }
   EXPECT_TRUE(detect(kBoard, scene.expose(0.6, 2.0)).corners.empty());
@@ -176,12 +176,12 @@ TEST(Checkerboard, losesCornersAtTheImagesBorder) {
   DetectorOptions options;
   const double nearest_px =
       std::min_element(truth.begin(), truth.end(), [](const auto& a, const auto& b) { return a.px.y() < b.px.y(); })->px.y();
-  const auto countAt = [&](double distance_px) {
+  const auto count_at = [&](double distance_px) {
     options.min_border_distance_px = distance_px;
     return TargetDetector(kBoard, options).detect(scene.expose(0.6, 2.0)).corners.size();
   };
-  EXPECT_EQ(countAt(nearest_px - 1.0), truth.size());
-  EXPECT_LT(countAt(nearest_px + 1.0), truth.size());
+  EXPECT_EQ(count_at(nearest_px - 1.0), truth.size());
+  EXPECT_LT(count_at(nearest_px + 1.0), truth.size());
 }
 
 /// The corner ids of a board that is turned by quarters, in the order of the ids as drawn.

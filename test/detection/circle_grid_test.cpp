@@ -55,7 +55,7 @@ cv::Mat drawCircles(const std::vector<Eigen::Vector2d>& centres_px, int radius_p
 /// same and is not mirrored.
 bool isNumberedAsSomeTurn(const target::CircleGrid& grid, const Detection& detection,
                           const std::vector<Eigen::Vector2d>& truth_px) {
-  const auto turnedId = [&grid](int id, int quarter_turns) {
+  const auto turned_id = [&grid](int id, int quarter_turns) {
     const int row = id / grid.cols;
     const int col = id % grid.cols;
     const std::array<int, 4> turned{id, (grid.cols - 1 - col) * grid.rows + row,
@@ -66,7 +66,7 @@ bool isNumberedAsSomeTurn(const target::CircleGrid& grid, const Detection& detec
   for (int quarter_turns = 0; quarter_turns < 4; quarter_turns += grid.rows == grid.cols && !grid.asymmetric ? 1 : 2) {
     bool fits = detection.corners.size() == truth_px.size();
     for (std::size_t id = 0; fits && id < truth_px.size(); ++id) {
-      const std::size_t turned = turnedId(static_cast<int>(id), quarter_turns);
+      const std::size_t turned = turned_id(static_cast<int>(id), quarter_turns);
       fits = (detection.corners[turned].px - truth_px[id]).norm() < 0.5;
     }
     if (fits) {

@@ -36,13 +36,13 @@ bool isConsistent(const std::map<int, Eigen::Vector2i>& places) {
     Eigen::Matrix2i R;
     R << (turn % 2 == 0 ? 1 - turn : 0), (turn % 2 == 1 ? turn - 2 : 0), (turn % 2 == 1 ? 2 - turn : 0),
         (turn % 2 == 0 ? 1 - turn : 0);
-    const auto boardPlace = [&R](int id) {
+    const auto board_place = [&R](int id) {
       return Eigen::Vector2i(R * Eigen::Vector2i(id / kBoard.cols, id % kBoard.cols));
     };
-    const Eigen::Vector2i shift = places.begin()->second - boardPlace(places.begin()->first);
+    const Eigen::Vector2i shift = places.begin()->second - board_place(places.begin()->first);
     bool fits = true;
     for (const auto& [id, place] : places) {
-      fits = fits && place == boardPlace(id) + shift;
+      fits = fits && place == board_place(id) + shift;
     }
     if (fits) {
       return true;
