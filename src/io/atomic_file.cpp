@@ -99,21 +99,36 @@ void AtomicFile::closeFile() {
   }
 }
 
-void AtomicFile::commit() {
-  flush();
-  if (temporary_path_.empty()) {
-    closeFile();
+void AtomicFile::complete() {
+  if (descriptor_ < 0) {
     return;
   }
-  if (fsync(descriptor_) != 0) {
+  flush();
+  if (!temporary_path_.empty() && fsync(descriptor_) != 0) {
     fail(path_, errno);
   }
   closeFile();
+}
+
+void AtomicFile::commit() {
+  complete();
+  if (temporary_path_.empty()) {
+    return;
+  }
   if (std::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) {
     fail(path_, errno);
   }
   temporary_path_.clear();
   flushFolder(final_path_);
+}
+
+void AtomicFileSet::commit() {
+  for (AtomicFile& file : files_) {
+    file.complete();
+  }
+  for (AtomicFile& file : files_) {
+    file.commit();
+  }
 }
 
 void writeFile(const std::string& path, std::string_view text) {

@@ -7,7 +7,6 @@
 
 #include "corners_header.h"
 #include "tartan_calib/error.h"
-#include "tartan_calib/io/atomic_file.h"
 
 namespace tartan_calib::io {
 namespace {
@@ -86,8 +85,7 @@ bool isWritable(const Corner& corner) {
 
 }  // namespace
 
-void saveCorners(const std::string& path, const std::vector<pipeline::CameraCorners>& cameras) {
-  AtomicFile file(path);
+void writeCorners(const std::vector<pipeline::CameraCorners>& cameras, AtomicFile& file) {
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     file.write(cameraLine({static_cast<int>(i), cameras[i].width, cameras[i].height, cameras[i].topic}) + "\n");
   }
@@ -105,6 +103,11 @@ void saveCorners(const std::string& path, const std::vector<pipeline::CameraCorn
       }
     }
   }
+}
+
+void saveCorners(const std::string& path, const std::vector<pipeline::CameraCorners>& cameras) {
+  AtomicFile file(path);
+  writeCorners(cameras, file);
   file.commit();
 }
 

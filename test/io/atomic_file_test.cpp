@@ -78,6 +78,34 @@ TEST(AtomicFile, HasTheUsersUsualRights) {
   EXPECT_EQ(static_cast<int>(fs::status(folder.file("result.txt")).permissions()), 0640);
 }
 
+TEST(AtomicFileSet, LeavesAllFilesAsTheyWereWhereOneCannotBeCompleted) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full on this system";
+  }
+  const TemporaryFolder folder;
+  writeFile(folder.file("a.txt"), "old");
+  {
+    AtomicFileSet files;
+    files.add(folder.file("a.txt")).write("new");
+    files.add("/dev/full").write("text");
+    files.add(folder.file("b.txt")).write("new");
+    expectMessage<InputError>([&] { files.commit(); }, {"/dev/full", "No space left on device"});
+  }
+  EXPECT_EQ(contentOf(folder.file("a.txt")), "old");
+  EXPECT_EQ(numFiles(folder), 1);
+}
+
+TEST(AtomicFileSet, WritesAllFiles) {
+  const TemporaryFolder folder;
+  AtomicFileSet files;
+  files.add(folder.file("a.txt")).write("a");
+  files.add(folder.file("b.txt")).write("b");
+  files.commit();
+  EXPECT_EQ(contentOf(folder.file("a.txt")), "a");
+  EXPECT_EQ(contentOf(folder.file("b.txt")), "b");
+  EXPECT_EQ(numFiles(folder), 2);
+}
+
 TEST(AtomicFile, AFullDiskIsAnErrorThatSaysSo) {
   if (!fs::exists("/dev/full")) {
     GTEST_SKIP() << "no /dev/full on this system";

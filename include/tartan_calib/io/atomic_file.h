@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,9 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view text);
+
+  /// Everything is on the disk and the file is closed; only its name is missing.
+  void complete();
   void commit();
 
  private:
@@ -28,6 +32,18 @@ class AtomicFile {
   std::string temporary_path_;  ///< empty where the file is written directly
   std::string buffer_;
   int descriptor_ = -1;
+};
+
+/// Files that belong together: none has its name before all are complete, so that a full disk leaves all of them as they
+/// were.
+class AtomicFileSet {
+ public:
+  /// The reference is valid while the set is.
+  AtomicFile& add(const std::string& path) { return files_.emplace_back(path); }
+  void commit();
+
+ private:
+  std::deque<AtomicFile> files_;
 };
 
 /// All of `text` as one AtomicFile.

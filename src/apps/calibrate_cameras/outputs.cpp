@@ -62,21 +62,23 @@ OutputFiles writeOutputs(const pipeline::CalibrationResult& result, const Argume
                          const pipeline::CalibrateOptions& options, const std::string& command) {
   const std::string prefix = outputPrefix(arguments);
   const std::string& recording = arguments.corners_file.empty() ? arguments.recording : arguments.corners_file;
+  io::AtomicFileSet together;
+  const auto add = [&](std::string& path, const char* suffix) -> io::AtomicFile& {
+    path = prefix + suffix;
+    return together.add(path);
+  };
   OutputFiles files;
-  files.camchain = prefix + "-camchain.yaml";
-  io::writeFile(files.camchain, io::camchainText(io::camchain(result)));
-  files.results = prefix + "-results-cam.txt";
-  io::writeFile(files.results, io::resultsText(result));
-  files.calibration = prefix + "-calibration.yaml";
-  io::writeFile(files.calibration, io::calibrationText(result, options, {recording, arguments.target_file, command}));
+  add(files.camchain, "-camchain.yaml").write(io::camchainText(io::camchain(result)));
+  add(files.results, "-results-cam.txt").write(io::resultsText(result));
+  add(files.calibration, "-calibration.yaml")
+      .write(io::calibrationText(result, options, {recording, arguments.target_file, command}));
   if (arguments.export_poses) {
-    files.poses = prefix + "-poses-cam0.csv";
-    io::writeFile(files.poses, io::posesText(result));
+    add(files.poses, "-poses-cam0.csv").write(io::posesText(result));
   }
   if (arguments.export_corners) {
-    files.corners = prefix + kCornersSuffix;
-    io::saveCorners(files.corners, pipeline::observedCorners(result));
+    io::writeCorners(pipeline::observedCorners(result), add(files.corners, kCornersSuffix));
   }
+  together.commit();
   return files;
 }
 

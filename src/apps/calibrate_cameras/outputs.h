@@ -23,7 +23,7 @@ struct OutputFiles {
   std::string corners;
 };
 
-/// Each file is written whole or not at all. `command` is kept in the calibration file.
+/// All files are written whole, or none of them is. `command` is kept in the calibration file.
 OutputFiles writeOutputs(const pipeline::CalibrationResult& result, const Arguments& arguments,
                          const pipeline::CalibrateOptions& options, const std::string& command);
 
