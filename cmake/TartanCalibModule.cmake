@@ -67,7 +67,7 @@ function(tartan_calib_tests name)
   target_compile_options(${name}_test PRIVATE ${TARTAN_CALIB_WARNINGS})
   target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_compile_definitions(${name}_test PRIVATE TARTAN_CALIB_SOURCE_DIR="${TARTAN_CALIB_SOURCE_DIR}")
-  target_link_libraries(${name}_test PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
+  target_link_libraries(${name}_test PRIVATE ${ARGN} GTest::GTest GTest::Main)  # the names that CMake 3.16 knows too
   gtest_discover_tests(${name}_test TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
 endfunction()
 
