@@ -3,6 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "image_bytes.h"
 #include "tartan_calib/error.h"
 
 namespace tartan_calib::io {
@@ -83,6 +84,9 @@ bool spansFewLevels(const cv::Mat& gray16) {
 }
 
 cv::Mat decodeGray(const std::vector<std::uint8_t>& bytes) {
+  if (endsEarly(bytes)) {
+    throw InputError("the file is cut off");
+  }
   cv::Mat gray;
   try {
     gray = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
