@@ -119,16 +119,23 @@ std::vector<SaddleLattice> findLattices(const cv::Mat& gray, const std::vector<S
   return lattices;
 }
 
-std::vector<PlacedCorners> findBoards(const cv::Mat& gray, const target::Checkerboard& board) {
+struct FoundBoards {
+  std::vector<PlacedCorners> placed;
+  std::vector<BoardSize> other_sizes;
+};
+
+FoundBoards findBoards(const cv::Mat& gray, const target::Checkerboard& board) {
   const std::vector<Saddle> saddles = findSaddles(gray);
   const auto min_corners = static_cast<std::size_t>(kMinStart_ratio * board.rows * board.cols);
-  std::vector<PlacedCorners> boards;
+  FoundBoards found;
   for (const SaddleLattice& lattice : findLattices(gray, saddles, min_corners)) {
     if (auto placed = placeOnBoard(lattice, saddles, board)) {
-      boards.push_back(std::move(*placed));
+      found.placed.push_back(std::move(*placed));
+    } else if (const auto size = shownSize(lattice)) {
+      found.other_sizes.push_back(*size);
     }
   }
-  return boards;
+  return found;
 }
 
 class CheckerboardMethod : public DetectionMethod {
@@ -137,13 +144,16 @@ class CheckerboardMethod : public DetectionMethod {
 
   Detection detect(const cv::Mat& gray) const override {
     Detection detection;
-    const std::vector<PlacedCorners> boards = findBoards(gray, board_);
-    if (boards.size() != 1) {
-      detection.counts.duplicate_tags = static_cast<int>(boards.size());
+    const FoundBoards found = findBoards(gray, board_);
+    if (found.placed.empty() && found.other_sizes.size() == 1) {
+      detection.counts.other_sizes[found.other_sizes.front()] = 1;
+    }
+    if (found.placed.size() != 1) {
+      detection.counts.duplicate_tags = static_cast<int>(found.placed.size());
       return detection;
     }
     detection.counts.tags = 1;
-    const BoardRefiner refiner(gray, boards.front());
+    const BoardRefiner refiner(gray, found.placed.front());
     for (int row = 0; row < board_.rows; ++row) {
       for (int col = 0; col < board_.cols; ++col) {
         const auto corner = refiner.refine({row, col}, options_.max_refine_shift_px);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 
 namespace tartan_calib::detection {
@@ -9,6 +10,8 @@ namespace {
 
 // An outer line of the lattice with a smaller share of corners than the fullest line is a chance find beyond the board.
 constexpr double kMinLineFill_ratio = 0.5;
+// A lattice with a smaller share of corners says nothing about the size of a board.
+constexpr double kMinBoardFill_ratio = 0.9;
 
 /// Columns and rows of a lattice, the first inclusive, the last exclusive.
 struct Extent {
@@ -130,6 +133,16 @@ std::optional<PlacedCorners> placeOnBoard(const SaddleLattice& lattice, const st
     }
   }
   return best;
+}
+
+std::optional<BoardSize> shownSize(const SaddleLattice& lattice) {
+  const Extent extent = filledExtent(lattice);
+  const std::vector<int> counts = lineCounts(lattice, extent, true);
+  const int num_corners = std::accumulate(counts.begin(), counts.end(), 0);
+  if (num_corners < kMinBoardFill_ratio * extent.columns() * extent.rows()) {
+    return std::nullopt;
+  }
+  return BoardSize(std::minmax(extent.columns(), extent.rows()));
 }
 
 }  // namespace tartan_calib::detection

@@ -6,6 +6,7 @@
 
 #include "lattice_map.h"
 #include "tartan_calib/detection/lattice.h"
+#include "tartan_calib/detection/target_detector.h"
 #include "tartan_calib/target/target.h"
 
 namespace tartan_calib::detection {
@@ -25,5 +26,8 @@ struct PlacedCorners {
 /// even: half a turn, or a quarter turn of a square board), rows and columns run towards the lower right of the image.
 std::optional<PlacedCorners> placeOnBoard(const SaddleLattice& lattice, const std::vector<Saddle>& saddles,
                                           const target::Checkerboard& board);
+
+/// The size of the checkerboard that a lattice shows; nothing where many of its corners are missing.
+std::optional<BoardSize> shownSize(const SaddleLattice& lattice);
 
 }  // namespace tartan_calib::detection

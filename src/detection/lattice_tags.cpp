@@ -97,6 +97,10 @@ void countOther(const BoardSearch& search, const TagFace& face, DetectionCounts&
 std::vector<PlacedTag> findLatticeTags(const BoardSearch& search, const SaddleLattice& lattice, DetectionCounts& counts) {
   auto faces = readDarkFaces(search, lattice);
   auto vote = placeByVotes(search, faces);
+  if (const auto size = otherSize(search, faces, vote)) {
+    ++counts.other_sizes[*size];
+    return {};
+  }
   const auto num_other =
       std::count_if(faces.begin(), faces.end(), [](const TagFace& face) { return face.has_other_border; });
   if (vote && num_other > vote->num_votes) {  // by chance some codes survive the askew sampling

@@ -77,6 +77,29 @@ double meanCorrelation(const BoardSearch& search, const CorrelationTable& table,
   return sum / static_cast<double>(faces.size());
 }
 
+/// The faces that decoded as tags of a grid.
+std::vector<DecodedFace> decodedFaces(const target::AprilGrid& grid, const std::vector<TagFace>& faces) {
+  std::vector<DecodedFace> decoded;
+  for (const TagFace& face : faces) {
+    const auto index = face.match ? tagIndexOf(grid, face.match->tag_id) : std::nullopt;
+    if (index) {
+      decoded.push_back({face.column, face.row, *index, face.match->top_left});
+    }
+  }
+  return decoded;
+}
+
+/// Rows of a grid up to the last one with a face that voted for the placement.
+int rowsSeen(const target::AprilGrid& grid, const PlacementVote& vote, const std::vector<DecodedFace>& faces) {
+  int rows = 0;
+  for (const DecodedFace& face : faces) {
+    if (BoardPlacement(grid, face) == vote.placement) {
+      rows = std::max(rows, face.tag_index / grid.tag_cols + 1);
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::optional<int> tagAt(const target::AprilGrid& grid, const BoardPlacement& placement, const TagFace& face) {
@@ -91,15 +114,35 @@ std::optional<int> tagAt(const target::AprilGrid& grid, const BoardPlacement& pl
 }
 
 std::optional<PlacementVote> placeByVotes(const BoardSearch& search, const std::vector<TagFace>& faces) {
-  std::vector<DecodedFace> decoded;
-  for (const TagFace& face : faces) {
-    const auto index = face.match ? tagIndexOf(search.grid, face.match->tag_id) : std::nullopt;
-    if (index) {
-      decoded.push_back({face.column, face.row, *index, face.match->top_left});
+  const auto vote = votePlacement(search.grid, decodedFaces(search.grid, faces));
+  return vote && vote->num_votes >= minVotes(search) ? vote : std::nullopt;
+}
+
+std::optional<BoardSize> otherSize(const BoardSearch& search, const std::vector<TagFace>& faces,
+                                   const std::optional<PlacementVote>& vote_on_target) {
+  constexpr int kMinLead = 4;  // votes, so that misread tags decide nothing
+  const auto num_decoded = std::count_if(faces.begin(), faces.end(), [](const TagFace& f) { return f.match.has_value(); });
+  if (num_decoded < kMinLead || (vote_on_target && 2 * vote_on_target->num_votes >= num_decoded)) {
+    return std::nullopt;
+  }
+  target::AprilGrid grid = search.grid;
+  const int num_ids = static_cast<int>(search.reader.family().codes.size()) - grid.code_offset;
+  int most = 0;
+  int second = 0;
+  std::optional<BoardSize> size;
+  for (grid.tag_cols = 1; grid.tag_cols <= num_ids; ++grid.tag_cols) {
+    grid.tag_rows = num_ids / grid.tag_cols;
+    const std::vector<DecodedFace> faces_of_grid = decodedFaces(grid, faces);
+    const auto vote = votePlacement(grid, faces_of_grid);
+    const int num_votes = vote ? vote->num_votes : 0;
+    second = std::max(second, std::min(most, num_votes));
+    if (num_votes > most) {
+      most = num_votes;
+      size = BoardSize(rowsSeen(grid, *vote, faces_of_grid), grid.tag_cols);
     }
   }
-  const auto vote = votePlacement(search.grid, decoded);
-  return vote && vote->num_votes >= minVotes(search) ? vote : std::nullopt;
+  const bool is_other = most >= second + kMinLead && size->second != search.grid.tag_cols;
+  return is_other ? size : std::nullopt;
 }
 
 std::optional<PlacementVote> placeByLooks(const BoardSearch& search, const std::vector<TagFace>& faces) {

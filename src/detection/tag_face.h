@@ -27,6 +27,12 @@ std::optional<int> tagAt(const target::AprilGrid& grid, const BoardPlacement& pl
 /// places have equally many.
 std::optional<PlacementVote> placeByVotes(const BoardSearch& search, const std::vector<TagFace>& faces);
 
+/// Rows and columns of the board as its ids run from row to row, where that is another number of columns than the target's;
+/// nothing where most faces agree with `vote_on_target`, their place on the target, or no other size explains clearly more
+/// of them.
+std::optional<BoardSize> otherSize(const BoardSearch& search, const std::vector<TagFace>& faces,
+                                   const std::optional<PlacementVote>& vote_on_target);
+
 /// The place where the payloads, taken together, look like the board's, where no other comes near: for images so blurred
 /// that no single tag can be decoded.
 std::optional<PlacementVote> placeByLooks(const BoardSearch& search, const std::vector<TagFace>& faces);

@@ -22,6 +22,18 @@ struct MethodFor {
 
 }  // namespace
 
+DetectionCounts& DetectionCounts::operator+=(const DetectionCounts& more) {
+  tags += more.tags;
+  duplicate_tags += more.duplicate_tags;
+  foreign_tags += more.foreign_tags;
+  mirrored_tags += more.mirrored_tags;
+  other_border_tags += more.other_border_tags;
+  for (const auto& [size, num_images] : more.other_sizes) {
+    other_sizes[size] += num_images;
+  }
+  return *this;
+}
+
 TargetDetector::TargetDetector(const target::Target& target, const DetectorOptions& options)
     : method_(std::visit(MethodFor{options}, target)) {}
 

@@ -27,7 +27,7 @@ std::string noUsableImages(const CameraCorners& corners, const target::Target& t
   std::string text = "none of its " + std::to_string(corners.num_images) + " images shows ";
   const auto* grid = std::get_if<target::AprilGrid>(&target);
   if (corners.images.empty() || grid == nullptr) {
-    text += "the target: check target file, focus and exposure";
+    text += "the target: " + otherSizeNote(corners, target).value_or("check target file, focus and exposure");
   } else {
     int most = 0;
     for (const CameraView& image : corners.images) {

@@ -87,12 +87,7 @@ class Collector {
   }
 
   void keep(ImageResult result, int camera_index) {
-    const detection::DetectionCounts& counts = result.detection.counts;
-    corners_.counts.tags += counts.tags;
-    corners_.counts.duplicate_tags += counts.duplicate_tags;
-    corners_.counts.foreign_tags += counts.foreign_tags;
-    corners_.counts.mirrored_tags += counts.mirrored_tags;
-    corners_.counts.other_border_tags += counts.other_border_tags;
+    corners_.counts += result.detection.counts;
     if (!result.detection.corners.empty()) {
       corners_.images.push_back(CameraView{camera_index, result.stamp_ns, std::move(result.detection.corners)});
     }

@@ -177,6 +177,29 @@ std::optional<std::string> hemisphereNote(const CalibrationResult& result, int c
              max_angle_rad * kDegreesPerRadian, camera::modelName(model).c_str());
 }
 
+std::optional<std::string> otherSizeNote(const CameraCorners& corners, const target::Target& target) {
+  std::size_t num_sized = 0;
+  std::pair<detection::BoardSize, int> most;
+  for (const auto& size : corners.counts.other_sizes) {
+    num_sized += static_cast<std::size_t>(size.second);
+    most = size.second > most.second ? size : most;
+  }
+  const auto num_images = static_cast<std::size_t>(most.second);
+  if (num_images <= corners.images.size() || 2 * num_images <= num_sized) {
+    return std::nullopt;
+  }
+  const auto& [first, second] = most.first;
+  if (const auto* grid = std::get_if<target::AprilGrid>(&target)) {
+    return format("%zu images show %d rows and %d columns of tags, the target says %d and %d: set tagRows and tagCols",
+                  num_images, first, second, grid->tag_rows, grid->tag_cols);
+  }
+  if (const auto* board = std::get_if<target::Checkerboard>(&target)) {
+    return format("%zu images show %dx%d inner corners, the target says %dx%d: set targetCols and targetRows", num_images,
+                  first, second, std::min(board->cols, board->rows), std::max(board->cols, board->rows));
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target) {
   std::vector<std::string> warnings;
   const auto add = [&](const std::string& text) { warnings.push_back(camName(camera_index) + ": " + text); };
@@ -190,6 +213,9 @@ std::vector<std::string> detectionWarnings(const CameraCorners& corners, int cam
   }
   if (corners.num_same_stamp > 0) {
     add(format("%zu images have the stamp of the image before and were skipped", corners.num_same_stamp));
+  }
+  if (const std::optional<std::string> note = otherSizeNote(corners, target); note && !corners.images.empty()) {
+    add(*note);
   }
   const detection::DetectionCounts& counts = corners.counts;
   if (counts.duplicate_tags > 0) {

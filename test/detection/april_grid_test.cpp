@@ -243,6 +243,22 @@ TEST(AprilGridDetector, recognisesABoardWithTheOtherBorder) {
   }
 }
 
+TEST(AprilGridDetector, namesTheSizeOfABoardWithAnotherNumberOfColumns) {
+  target::AprilGrid printed;
+  printed.tag_rows = 5;
+  printed.tag_cols = 7;
+  BoardScene scene(vga());
+  scene.add(printed, kTilted);
+  for (const int stated_cols : {5, 6, 8}) {
+    target::AprilGrid stated = printed;
+    stated.tag_cols = stated_cols;
+    const Detection detection = TargetDetector(stated).detect(scene.expose(0.6, 2.0));
+    EXPECT_TRUE(detection.corners.empty()) << stated_cols;
+    EXPECT_EQ(detection.counts.other_sizes, (std::map<BoardSize, int>{{{5, 7}, 1}})) << stated_cols;
+  }
+  EXPECT_TRUE(TargetDetector(printed).detect(scene.expose(0.6, 2.0)).counts.other_sizes.empty());
+}
+
 TEST(AprilGridDetector, recognisesAMirroredBoard) {
   const target::AprilGrid grid;
   BoardScene scene(vga());

@@ -136,6 +136,14 @@ TEST(Checkerboard, isFoundBesideOneOfAnotherSize) {
   expectWholeBoard(detect(kBoard, scene.expose(0.6, 2.0)), truth, 0.02);
 }
 
+TEST(Checkerboard, isNamedWithItsSizeWhereTheTargetHasAnother) {
+  BoardScene scene(test_support::pinholeCamera(640, 480, 500.0));
+  scene.add(target::Checkerboard{10, 7, 0.03, 0.03}, {1.0, 5.0 * kDegree, 0.0, 0.0, 10.0 * kDegree, 20.0 * kDegree});
+  const Detection detection = detect(kBoard, scene.expose(0.6, 2.0));
+  EXPECT_TRUE(detection.corners.empty());
+  EXPECT_EQ(detection.counts.other_sizes, (std::map<BoardSize, int>{{{7, 10}, 1}}));
+}
+
 TEST(Checkerboard, isFoundWhereAStrangeSquareContinuesIt) {
   BoardScene scene(test_support::pinholeCamera(640, 480, 500.0));
   const auto truth = scene.add(kBoard, {0.6, 0.0, 0.0, 0.0, 0.0, 0.0});

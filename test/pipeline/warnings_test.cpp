@@ -141,6 +141,26 @@ TEST(DetectionWarnings, EveryKindOfSkippedImageAndTagIsTold) {
   EXPECT_NE(warnings[1].find("truncated JPEG"), std::string::npos);
 }
 
+TEST(DetectionWarnings, ABoardOfAnotherSizeIsNamedWhereClearlyMoreImagesShowIt) {
+  CameraCorners corners;
+  corners.counts.other_sizes = {{{8, 10}, 3}, {{8, 11}, 20}};
+  corners.images.resize(5);
+  const target::Target board = target::Checkerboard{10, 7, 0.02, 0.02};
+  EXPECT_EQ(detectionWarnings(corners, 0, board),
+            std::vector<std::string>{
+                "cam0: 20 images show 8x11 inner corners, the target says 7x10: set targetCols and targetRows"});
+  corners.images.resize(20);
+  EXPECT_TRUE(detectionWarnings(corners, 0, board).empty());
+  corners.images.resize(5);
+  corners.counts.other_sizes[{8, 10}] = 20;
+  EXPECT_TRUE(detectionWarnings(corners, 0, board).empty());
+  corners.counts.other_sizes = {{{6, 5}, 20}};
+  const std::vector<std::string> warnings = detectionWarnings(corners, 0, target::AprilGrid());
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0],
+            "cam0: 20 images show 6 rows and 5 columns of tags, the target says 6 and 6: set tagRows and tagCols");
+}
+
 TEST(DetectionWarnings, AnotherBorderWidthIsAHintWithTheRemedy) {
   CameraCorners corners;
   corners.counts.tags = 1;

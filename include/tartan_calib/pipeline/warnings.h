@@ -11,6 +11,9 @@ namespace tartan_calib::pipeline {
 /// Says so where corners beyond 90 degrees took part in a model that Kalibr and OpenCV end at 90 degrees.
 std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index);
 
+/// Says so where clearly more images show a board of another size than one of the target's.
+std::optional<std::string> otherSizeNote(const CameraCorners& corners, const target::Target& target);
+
 /// About images and tags of one camera: skipped images, dropped tags, a border of another width.
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target);
 
