@@ -179,16 +179,20 @@ std::optional<std::string> hemisphereNote(const CalibrationResult& result, int c
 
 std::optional<std::string> otherSizeNote(const CameraCorners& corners, const target::Target& target) {
   std::size_t num_sized = 0;
-  std::pair<detection::BoardSize, int> most;
-  for (const auto& size : corners.counts.other_sizes) {
-    num_sized += static_cast<std::size_t>(size.second);
-    most = size.second > most.second ? size : most;
+  std::size_t num_images = 0;
+  detection::BoardSize shown;
+  for (const auto& [size, count] : corners.counts.other_sizes) {
+    const auto num_with_size = static_cast<std::size_t>(count);
+    num_sized += num_with_size;
+    if (num_with_size > num_images) {
+      num_images = num_with_size;
+      shown = size;
+    }
   }
-  const auto num_images = static_cast<std::size_t>(most.second);
   if (num_images <= corners.images.size() || 2 * num_images <= num_sized) {
     return std::nullopt;
   }
-  const auto& [first, second] = most.first;
+  const auto& [first, second] = shown;
   if (const auto* grid = std::get_if<target::AprilGrid>(&target)) {
     return format("%zu images show %d rows and %d columns of tags, the target says %d and %d: set tagRows and tagCols",
                   num_images, first, second, grid->tag_rows, grid->tag_cols);

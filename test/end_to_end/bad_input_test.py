@@ -88,6 +88,22 @@ class WrongRecording(BadInput):
         self.assert_refused(self.calibrate(extra=["--bag-from-to", "3", "1"]), 1, "time window", "start")
         self.assert_refused(self.calibrate(extra=["--bag-from-to", "1000", "2000"]), 1, "/cam0/image_raw", "lasts")
 
+    def test_what_is_only_doubtful_is_a_warning(self):
+        folder = self.folder / "doubtful"
+        self.assertEqual(run("simulate", "--output-dir", folder, "--lens", "pinhole70", "--resolution", "480x400", "--views", 12)
+                         .returncode, 0)
+        image = sorted((folder / "cam0").iterdir())[3]
+        image.write_bytes(image.read_bytes()[:2000])
+        finished = self.calibrate(bag=folder, extra=["--bag-from-to", "-1", "1000"])
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        self.assertEqual(finished.stderr, "")
+        warnings = [line for line in finished.stdout.splitlines() if line.startswith("[ WARN]")]
+        for words in (("time window -1 to 1000 s exceeds", "lasts"), ("1 images cannot be read", image.name, "cut off")):
+            self.assertTrue(any(all(word in line for word in words) for line in warnings), warnings)
+        for file in self.folder.glob("doubtful-*"):
+            file.unlink()
+        shutil.rmtree(folder)
+
     def test_a_rate_that_is_none(self):
         for rate in ("-1", "0", "nan"):
             self.assert_refused(self.calibrate(extra=["--bag-freq", rate]), 1, "images per second")
@@ -128,13 +144,23 @@ class WrongTarget(BadInput):
         for key in GOOD_TARGET:
             self.assert_refused(self.calibrate(target=self.board(**{key: None})), 1, "board.yaml", key)
 
+    def test_a_missing_key_of_other_boards_is_named_too(self):
+        boards = {"checkerboard": ("targetCols", "targetRows", "rowSpacingMeters", "colSpacingMeters"),
+                  "circlegrid": ("targetCols", "targetRows", "spacingMeters", "asymmetricGrid")}
+        values = {"targetCols": 6, "targetRows": 7, "asymmetricGrid": "true"}
+        for kind, keys in boards.items():
+            for missing in keys:
+                lines = [f"target_type: {kind}"] + [f"{key}: {values.get(key, 0.02)}" for key in keys if key != missing]
+                board = self.written("board.yaml", "\n".join(lines) + "\n")
+                self.assert_refused(self.calibrate(target=board), 1, "board.yaml", missing)
+
     def test_an_unknown_type_is_answered_with_the_known_ones(self):
         finished = self.calibrate(target=self.board(target_type="'chessboard'"))
         self.assert_refused(finished, 1, "chessboard", "aprilgrid", "checkerboard", "circlegrid")
 
     def test_values_that_are_none(self):
         for key, value in (("tagSize", "0.0"), ("tagSize", "-1"), ("tagSize", "big"), ("tagSpacing", "0"), ("tagRows", "2.5"),
-                           ("tagRows", "0"), ("tagCols", "[6]"), ("tagFamily", "'t1h1'"), ("tagBorder", "0")):
+                           ("tagRows", "0"), ("tagRows", "2"), ("tagCols", "[6]"), ("tagFamily", "'t1h1'"), ("tagBorder", "0")):
             self.assert_refused(self.calibrate(target=self.board(**{key: value})), 1, "board.yaml", key)
 
 

@@ -48,8 +48,8 @@ TEST_P(DecodeGray, saysOfAFileCutOffAnywhereThatItIsAndNothingElse) {
 INSTANTIATE_TEST_SUITE_P(, DecodeGray,
                          testing::Values(File{".png", CV_8UC1}, File{".png", CV_16UC1}, File{".png", CV_8UC3},
                                          File{".jpg", CV_8UC1}, File{".jpg", CV_8UC3}),
-                         [](const auto& info) {
-                           return std::string(info.param.extension + 1) + std::to_string(info.param.type);
+                         [](const auto& file) {
+                           return std::string(file.param.extension + 1) + std::to_string(file.param.type);
                          });
 
 TEST(DecodeGrayOf, aJpegWithAThumbnailSeesTheEndOfThePictureNotOfTheThumbnail) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 
 #include "board_stream.h"
 #include "support/expect_message.h"
@@ -277,6 +278,29 @@ TEST(Calibrate, FromImagesRecoversTheLensWhateverTheNumberOfThreads) {
   EXPECT_EQ(one.cameras[0].num_images_used, 12U);
   EXPECT_EQ(one.times.size(), 5U + 3U * one.rounds.size());
   EXPECT_EQ(one.times[0].stage, Stage::kDetect);
+}
+
+/// Two copies of the board, each at half of its size.
+StampedImage doubled(const StampedImage& image, std::int64_t stamp_ns) {
+  cv::Mat half;
+  cv::resize(image.load(), half, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+  cv::Mat both(2 * half.rows, 2 * half.cols, CV_8UC1, cv::Scalar(128));
+  half.copyTo(both(cv::Rect(0, half.rows / 2, half.cols, half.rows)));
+  half.copyTo(both(cv::Rect(half.cols, half.rows / 2, half.cols, half.rows)));
+  return {stamp_ns, [both] { return both; }};
+}
+
+TEST(Calibrate, ImagesWithEveryTagTwiceAreLeftOutAndTold) {
+  std::vector<StampedImage> images = boardImages(12);
+  for (int i = 0; i < 3; ++i) {
+    images.push_back(doubled(images[static_cast<std::size_t>(i)], images.back().stamp_ns + kPeriod_ns));
+  }
+  const CalibrationResult result = calibrate({streamOf(images)}, smallGrid(), optionsFor({"pinhole-none"}));
+  EXPECT_EQ(result.cameras[0].num_images_used, 12U);
+  const Eigen::VectorXd parameters = camera::parameters(result.solution.rig.cameras[0].camera.model);
+  EXPECT_NEAR(parameters(0), Pinhole().focal_px, 0.01 * Pinhole().focal_px);
+  const auto tells = [](const std::string& text) { return text.find("their id was there twice") != std::string::npos; };
+  EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(), tells));
 }
 
 TEST(Calibrate, ATopicWithoutReadableImagesIsAnError) {
