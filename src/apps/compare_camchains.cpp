@@ -1,8 +1,8 @@
 #include "compare_camchains/comparison.h"
 
-#include <boost/program_options.hpp>
 #include <iostream>
 
+#include "common/command_line.h"
 #include "common/program.h"
 #include "tartan_calib/io/corners_csv.h"
 
@@ -36,20 +36,13 @@ po::variables_map parse(int argc, char** argv) {
   options.add_options()("camchain", po::value<std::vector<std::string>>());
   po::positional_options_description files;
   files.add("camchain", -1);
-  po::variables_map values;
-  try {
-    po::store(po::command_line_parser(argc, argv).options(options).positional(files).run(), values);
-  } catch (const po::error& error) {
-    throw UsageError(std::string(error.what()) + "; see --help");
-  }
-  return values;
+  return parseCommandLine(argc, argv, options, files);
 }
 
 int run(int argc, char** argv) {
   const po::variables_map values = parse(argc, argv);
-  if (argc == 1 || values.count("help") > 0) {
-    std::cout << kHelp;
-    return argc == 1 ? kWrongUsage : kSuccess;
+  if (const std::optional<int> exit_code = answerHelp(argc, values, kHelp)) {
+    return *exit_code;
   }
   const auto files =
       values.count("camchain") > 0 ? values["camchain"].as<std::vector<std::string>>() : std::vector<std::string>{};

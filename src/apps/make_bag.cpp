@@ -1,6 +1,6 @@
-#include <boost/program_options.hpp>
 #include <iostream>
 
+#include "common/command_line.h"
 #include "common/program.h"
 #include "make_bag/make_bag.h"
 
@@ -25,20 +25,13 @@ po::variables_map parse(int argc, char** argv) {
   po::options_description options;
   options.add_options()("help,h", "")("folder", po::value<std::string>())("output-bag", po::value<std::string>())(
       "output_bag", po::value<std::string>());
-  po::variables_map values;
-  try {
-    po::store(po::parse_command_line(argc, argv, options), values);
-  } catch (const po::error& error) {
-    throw UsageError(std::string(error.what()) + "; see --help");
-  }
-  return values;
+  return parseCommandLine(argc, argv, options);
 }
 
 int run(int argc, char** argv) {
   const po::variables_map values = parse(argc, argv);
-  if (argc == 1 || values.count("help") > 0) {
-    std::cout << kHelp;
-    return argc == 1 ? kWrongUsage : kSuccess;
+  if (const std::optional<int> exit_code = answerHelp(argc, values, kHelp)) {
+    return *exit_code;
   }
   const char* bag_option = values.count("output_bag") > 0 ? "output_bag" : "output-bag";
   if (values.count("folder") == 0 || values.count(bag_option) == 0) {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <ctime>
+#include <functional>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "support/calibration_trial.h"
 
@@ -12,60 +15,38 @@ namespace {
 using test_support::Condition;
 using test_support::Facing;
 
-Condition plain() { return {"plain"}; }
-
-Condition offCentre() {
-  Condition condition{"principal point off by 10 % of the width"};
-  condition.centre_offset_ratio = 0.1;
+Condition with(const std::string& name, const std::function<void(Condition&)>& change) {
+  Condition condition{name};
+  change(condition);
   return condition;
 }
 
-Condition fiveViews() {
-  Condition condition{"5 views"};
-  condition.num_views = 5;
-  return condition;
-}
+const Condition kCombined = with("all combined", [](Condition& c) {
+  c.centre_offset_ratio = 0.1;
+  c.num_views = 5;
+  c.wrong_ratio = 0.2;
+  c.max_tilt_rad = 0.15;
+});
 
-Condition manyWrong() {
-  Condition condition{"20 % wrong corners"};
-  condition.wrong_ratio = 0.2;
-  return condition;
-}
-
-Condition frontal() {
-  Condition condition{"board within 0.15 rad of facing the camera"};
-  condition.max_tilt_rad = 0.15;
-  return condition;
-}
-
-Condition frontoParallel() {
-  Condition condition{"board within 0.15 rad of the image plane"};
-  condition.max_tilt_rad = 0.15;
-  condition.facing = Facing::kImagePlane;
-  return condition;
-}
-
-Condition combined() {
-  Condition condition{"all combined"};
-  condition.centre_offset_ratio = 0.1;
-  condition.num_views = 5;
-  condition.wrong_ratio = 0.2;
-  condition.max_tilt_rad = 0.15;
-  return condition;
-}
-
-Condition twoViews() {
-  Condition condition{"2 views of 60 corners"};
-  condition.num_views = 2;
-  condition.min_corners = 60;
-  condition.max_corners = 60;
-  return condition;
-}
-
-Condition obliquePixels() {
-  Condition condition{"pixels 5 % higher than wide"};
-  condition.aspect_ratio = 1.05;
-  return condition;
+std::vector<Condition> conditions() {
+  return {{"plain"},
+          with("principal point off by 10 % of the width", [](Condition& c) { c.centre_offset_ratio = 0.1; }),
+          with("5 views", [](Condition& c) { c.num_views = 5; }),
+          with("20 % wrong corners", [](Condition& c) { c.wrong_ratio = 0.2; }),
+          with("board within 0.15 rad of facing the camera", [](Condition& c) { c.max_tilt_rad = 0.15; }),
+          with("board within 0.15 rad of the image plane",
+               [](Condition& c) {
+                 c.max_tilt_rad = 0.15;
+                 c.facing = Facing::kImagePlane;
+               }),
+          kCombined,
+          with("2 views of 60 corners",
+               [](Condition& c) {
+                 c.num_views = 2;
+                 c.min_corners = 60;
+                 c.max_corners = 60;
+               }),
+          with("pixels 5 % higher than wide", [](Condition& c) { c.aspect_ratio = 1.05; })};
 }
 
 class InitializationSuccess : public ::testing::TestWithParam<Condition> {};
@@ -96,13 +77,11 @@ TEST_P(InitializationSuccess, DISABLED_succeeds_200_times) {
   const double cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   std::cout << GetParam().name << ": " << kNumTrials - num_failed << "/" << kNumTrials << ", " << cpu_s / kNumTrials
             << " s each (simulation, start and solve)\n";
-  const double required = GetParam().name == combined().name ? kRequiredWhenCombined : 1.0;
+  const double required = GetParam().name == kCombined.name ? kRequiredWhenCombined : 1.0;
   EXPECT_GE(kNumTrials - num_failed, required * kNumTrials);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conditions, InitializationSuccess,
-                         ::testing::Values(plain(), offCentre(), fiveViews(), manyWrong(), frontal(), frontoParallel(),
-                                           combined(), twoViews(), obliquePixels()));
+INSTANTIATE_TEST_SUITE_P(Conditions, InitializationSuccess, ::testing::ValuesIn(conditions()));
 
 }  // namespace
 }  // namespace tartan_calib::calibration

@@ -10,6 +10,20 @@ namespace {
 /// The text up to our own last lines.
 std::string kalibrPart(const std::string& text) { return text.substr(0, text.find("\n# ")); }
 
+constexpr const char* kTargetPart = R"(
+
+
+Target configuration
+====================
+
+  Type: aprilgrid
+  Tags: 
+    Rows: 6
+    Cols: 6
+    Size: 0.088 [m]
+    Spacing 0.026399999999999996 [m]
+)";
+
 /// Sets the statistics and the standard deviations (parameters in Kalibr's order) of one camera.
 void setCamera(pipeline::CalibrationResult& result, int index, const Eigen::Vector4d& error, const Eigen::VectorXd& stdev) {
   calibration::CameraStatistics& statistics = result.cameras[static_cast<std::size_t>(index)].statistics;
@@ -37,19 +51,7 @@ cam0 (/cam0/image_raw):
     projection: [ -0.21105497   0.56983676 158.27320807 157.96699156 318.6426997
  242.2472843 ] +- [0.0075736  0.00175597 1.42700427 1.43576844 0.29634297 0.28592245]
     reprojection error: [-0.000004, 0.000006] +- [0.050738, 0.050980]
-
-
-
-Target configuration
-====================
-
-  Type: aprilgrid
-  Tags: 
-    Rows: 6
-    Cols: 6
-    Size: 0.088 [m]
-    Spacing 0.026399999999999996 [m]
-)");
+)" + std::string(kTargetPart));
 }
 
 TEST(ResultsText, IsWhatKalibrWroteForAnOmniCamera) {
@@ -107,19 +109,7 @@ cam1 (/cam1/image_raw):
 baseline T_1_0:
     q: [ 0.00000009 -0.00000014 -0.00000002  1.        ] +- [0.00063233 0.00088191 0.00011612]
     t: [ 0.00000002 -0.00000005  0.00000003] +- [0.00016788 0.00017711 0.00032975]
-
-
-
-Target configuration
-====================
-
-  Type: aprilgrid
-  Tags: 
-    Rows: 6
-    Cols: 6
-    Size: 0.088 [m]
-    Spacing 0.026399999999999996 [m]
-)");
+)" + std::string(kTargetPart));
 }
 
 TEST(ResultsText, TheQuaternionIsJplsWithPositiveW) {

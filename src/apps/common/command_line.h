@@ -1,0 +1,17 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <optional>
+
+namespace tartan_calib::apps {
+
+/// The values of a command line. Throws UsageError for what `options` do not describe.
+boost::program_options::variables_map parseCommandLine(
+    int argc, char** argv, const boost::program_options::options_description& options,
+    const boost::program_options::positional_options_description& files = {});
+
+/// Prints the help where it is asked for, by `--help` or an empty command line. The exit code where that is all; nothing
+/// where the program is to run.
+std::optional<int> answerHelp(int argc, const boost::program_options::variables_map& values, const char* help);
+
+}  // namespace tartan_calib::apps
