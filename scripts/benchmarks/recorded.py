@@ -5,6 +5,7 @@ import gzip
 import json
 import os
 import pathlib
+import re
 
 import numpy as np
 import yaml
@@ -71,6 +72,28 @@ def euroc(settings):
     text, _ = run("compare_camchains", WORK / "euroc-camchain.yaml", WORK / "euroc-published-camchain.yaml", "--corners",
                   WORK / "euroc.csv")
     print("Difference to the published projection where the recording has corners:\n\n```\n" + text.strip() + "\n```\n")
+    check_euroc(target, topics)
+
+
+def check_euroc(target, topics):
+    """Whether it is the data or the fit that disagrees with the published calibration."""
+    corners = WORK / "euroc.csv"
+    halves = [WORK / "euroc-even.csv", WORK / "euroc-odd.csv"]
+    split_by_stamp(corners, *halves, lambda index: index % 2 == 0)
+    radtan = ["pinhole-radtan"] * 2
+    cases = [("published lenses, poses and extrinsics only", corners, radtan,
+              ["--init", WORK / "euroc-published-camchain.yaml", "--fix", "intrinsics"])]
+    cases += [(f"{name} half of the views", half, radtan, []) for name, half in zip(["even", "odd"], halves)]
+    cases += [(model, corners, [model] * 2, []) for model in ["pinhole-equi", "omni-radtan", "eucm-none", "ds-none"]]
+    rows = []
+    for label, source, models, flags in cases:
+        own = WORK / f"euroc-check{len(rows)}.csv"
+        own.write_text(source.read_text())
+        _, record, _ = calibrate(own.with_suffix(""), own, target, models, topics, *flags)
+        text, _ = run("compare_camchains", WORK / "euroc-camchain.yaml", f"{own.with_suffix('')}-camchain.yaml", "--corners", corners)
+        differences = re.findall(r"differs by ([0-9.]+) px rms", text)
+        rows.append([label, *(f"{rms(record, index):.3f}" for index in range(2)), *(f"{float(px):.2f}" for px in differences[:2])])
+    table(["", "cam0: rms [px]", "cam1: rms [px]", "cam0: differs from ours by, rms [px]", "cam1: differs from ours by, rms [px]"], rows)
 
 
 def publish_euroc_chain(chain):
