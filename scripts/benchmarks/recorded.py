@@ -89,11 +89,16 @@ def check_euroc(target, topics):
     for label, source, models, flags in cases:
         own = WORK / f"euroc-check{len(rows)}.csv"
         own.write_text(source.read_text())
-        _, record, _ = calibrate(own.with_suffix(""), own, target, models, topics, *flags)
-        text, _ = run("compare_camchains", WORK / "euroc-camchain.yaml", f"{own.with_suffix('')}-camchain.yaml", "--corners", corners)
-        differences = re.findall(r"differs by ([0-9.]+) px rms", text)
-        rows.append([label, *(f"{rms(record, index):.3f}" for index in range(2)), *(f"{float(px):.2f}" for px in differences[:2])])
-    table(["", "cam0: rms [px]", "cam1: rms [px]", "cam0: differs from ours by, rms [px]", "cam1: differs from ours by, rms [px]"], rows)
+        chain, record, _ = calibrate(own.with_suffix(""), own, target, models, topics, *flags)
+        row = [label, ", ".join(f"{rms(record, index):.3f}" for index in range(2)),
+               ", ".join("({:.1f} {:.1f})".format(*chain[f"cam{index}"]["intrinsics"][-2:]) for index in range(2))]
+        for other in ["euroc", "euroc-published"]:
+            text, _ = run("compare_camchains", f"{own.with_suffix('')}-camchain.yaml", WORK / f"{other}-camchain.yaml",
+                          "--corners", corners)
+            row.append(", ".join(f"{float(px):.2f}" for px in re.findall(r"differs by ([0-9.]+) px rms", text)))
+        rows.append(row)
+    table(["cam0, cam1 of", "rms [px]", "principal points [px]", "differ from ours by, rms [px]",
+           "differ from the published ones by, rms [px]"], rows)
 
 
 def publish_euroc_chain(chain):

@@ -9,9 +9,9 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-template <std::size_t N>
-bool hasAt(const Bytes& bytes, std::size_t at, const std::array<std::uint8_t, N>& expected) {
-  return at + N <= bytes.size() &&
+template <std::size_t kSize>
+bool hasAt(const Bytes& bytes, std::size_t at, const std::array<std::uint8_t, kSize>& expected) {
+  return at + kSize <= bytes.size() &&
          std::equal(expected.begin(), expected.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
