@@ -21,6 +21,14 @@ HEADER = ["camera", "stamp_ns", "corner_id", "u_px", "v_px", "cov_uu", "cov_uv",
 FAMILIES = {"t36h11": cv2.aruco.DICT_APRILTAG_36H11}
 
 
+def images(bag_path):
+    """(stamp, grey image) of each message; only mono8 is understood, as simulate writes it."""
+    with rosbag.Bag(str(bag_path)) as bag:
+        for _, message, _ in bag.read_messages(TOPIC):
+            gray = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)[:, :message.width]
+            yield message.header.stamp.to_nsec(), gray
+
+
 def parameters(border_cells):
     result = cv2.aruco.DetectorParameters_create()
     result.markerBorderBits = border_cells
@@ -46,17 +54,14 @@ def main():
     options = parameters(target.get("tagBorder", 2))
     num_tags = target["tagRows"] * target["tagCols"]
     rows, times_s = [], []
-    with rosbag.Bag(bag_path) as bag:
-        for _, message, _ in bag.read_messages(TOPIC):
-            gray = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)[:, :message.width]
-            start = time.process_time()
-            quads, tags, _ = cv2.aruco.detectMarkers(gray, family, parameters=options)
-            times_s.append(time.process_time() - start)
-            found = {tag - target.get("codeOffset", 0): quad[0] for tag, quad in zip([] if tags is None else tags.ravel(), quads)}
-            corners = [(corner, px) for tag, quad in found.items() if 0 <= tag < num_tags
-                       for corner, px in zip(corner_ids(target, int(tag)), quad)]
-            stamp_ns = message.header.stamp.to_nsec()
-            rows += [[0, stamp_ns, corner, *px, "", "", "", 1] for corner, px in sorted(corners, key=lambda pair: pair[0])]
+    for stamp_ns, gray in images(bag_path):
+        start = time.process_time()
+        quads, tags, _ = cv2.aruco.detectMarkers(gray, family, parameters=options)
+        times_s.append(time.process_time() - start)
+        found = {tag - target.get("codeOffset", 0): quad[0] for tag, quad in zip([] if tags is None else tags.ravel(), quads)}
+        corners = [(corner, px) for tag, quad in found.items() if 0 <= tag < num_tags
+                   for corner, px in zip(corner_ids(target, int(tag)), quad)]
+        rows += [[0, stamp_ns, corner, *px, "", "", "", 1] for corner, px in sorted(corners, key=lambda pair: pair[0])]
     with open(output_path, "w", newline="") as file:
         file.write(f"# cam0 {gray.shape[1]} {gray.shape[0]} {TOPIC}\n")
         csv.writer(file, lineterminator="\n").writerows([HEADER, *rows])

@@ -17,6 +17,7 @@ class Recording:
 
     name: str
     title: str
+    edge_deg: float  # half the angle of view
 
     @property
     def files(self):
@@ -24,8 +25,8 @@ class Recording:
         return rendered(self.name, "--preset", self.name)
 
 
-RECORDINGS = [Recording("bf5m", "lens like the Lensagon BF5M, 195 degrees, 1224x1024"),
-              Recording("gopro", "lens like the GoPro's, 150 degrees, 1280x960")]
+RECORDINGS = [Recording("bf5m", "lens like the Lensagon BF5M, 195 degrees, 1224x1024", 97.5),
+              Recording("gopro", "lens like the GoPro's, 150 degrees, 1280x960", 75.0)]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,11 +98,13 @@ def our_detector(key, title, *flags, needs_flag=""):
     return Detector(key, title, lambda recording, key: ours(recording, key, *flags), needs_flag)
 
 
-DETECTORS = [
+PEERS = [
     Detector("apriltag", "libapriltag, as it comes", apriltag),
     Detector("apriltag2", "libapriltag, family with two border cells",
              lambda recording, key: apriltag(recording, key, "--border-cells", 2)),
     Detector("aruco", "OpenCV ArUco, two border cells", aruco),
+]
+OURS = [
     our_detector("round0", "round 0", "--max-rounds", "0"),
     our_detector("cube", "round 0 and the faces of a cube", "--max-rounds", "0", "--projections", "cube",
                  needs_flag="--projections"),
@@ -111,4 +114,4 @@ DETECTORS = [
 
 
 def available():
-    return [detector for detector in DETECTORS if not detector.needs_flag or has_flag(detector.needs_flag)]
+    return [detector for detector in [*PEERS, *OURS] if not detector.needs_flag or has_flag(detector.needs_flag)]

@@ -31,24 +31,18 @@ class Truth:
         self.hidden = np.array([row["visibility"] == "hidden" for row in seen])
         visible = np.array([row["visibility"] == "visible" for row in seen])
         self.asked = visible & (np.array([float(row["neighbour_px"]) for row in seen]) >= MIN_NEIGHBOUR_PX)
-        self.polar_deg, self.azimuth_deg = self._angles(target, f"{base}-truth-poses.csv")
+        self.T_cam_target = read_poses(f"{base}-truth-poses.csv")  # (rotation, translation) by stamp
+        self.polar_deg, self.azimuth_deg = self._angles(yaml.safe_load(target.read_text()))
         self.row_of = {key: row for row, key in enumerate(zip(self.stamp_ns.tolist(), self.corner_id.tolist()))}
 
     def asked_within(self, band):
         """Which corners are asked for and within a band of polar angle [degrees]."""
         return self.asked & (self.polar_deg >= band[0]) & (self.polar_deg < band[1])
 
-    def _angles(self, target, poses_path):
-        """Polar angle from the camera's axis and azimuth of each corner, from the true poses."""
-        points = corner_points(yaml.safe_load(target.read_text()))
-        poses = {}
-        with open(poses_path) as file:
-            next(file)
-            for stamp, *values in csv.reader(file):  # T_target_cam: position, then the quaternion w, x, y, z
-                values = np.array(values, float)
-                poses[int(stamp)] = (values[:3], rotation(values[3:]))
-        rays = np.array([poses[stamp][1].T @ (points[corner] - poses[stamp][0])
-                         for stamp, corner in zip(self.stamp_ns.tolist(), self.corner_id.tolist())])
+    def _angles(self, target):
+        """Polar angle from the camera's axis and azimuth of each corner."""
+        rays = np.array([R @ board_point(target, corner) + t for (R, t), corner in
+                         ((self.T_cam_target[stamp], corner) for stamp, corner in zip(self.stamp_ns.tolist(), self.corner_id))])
         polar = np.degrees(np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]))
         return polar, np.degrees(np.arctan2(rays[:, 1], rays[:, 0]))
 
@@ -86,12 +80,34 @@ def bands(max_deg):
     return [(start, start + BAND_DEG) for start in range(0, int(np.ceil(max_deg / BAND_DEG)) * BAND_DEG, BAND_DEG)]
 
 
-def corner_points(target):
-    """Corners of an AprilGrid in the target frame [m] by corner id, from its parsed YAML."""
-    size, pitch = target["tagSize"], target["tagSize"] * (1 + target["tagSpacing"])
-    x, y = ([index // 2 * pitch + index % 2 * size for index in range(2 * tags)]
-            for tags in (target["tagCols"], target["tagRows"]))
-    return np.array([[u, v, 0.0] for v in y for u in x])
+def board_point(target, corner_id):
+    """Corner of an AprilGrid in the target frame [m], from its parsed YAML."""
+    pitch = target["tagSize"] * (1 + target["tagSpacing"])
+    row, col = divmod(corner_id, 2 * target["tagCols"])
+    return np.array([*(index // 2 * pitch + index % 2 * target["tagSize"] for index in (col, row)), 0.0])
+
+
+def project(camera, T_cam_target, points):
+    """Pixels of points of the board through a double sphere of a camchain."""
+    if camera["camera_model"] != "ds":
+        raise ValueError(f"the true lens is no double sphere but {camera['camera_model']}")
+    xi, alpha, fu, fv, cu, cv = camera["intrinsics"]
+    x, y, z = (points @ T_cam_target[0].T + T_cam_target[1]).T
+    shifted = z + xi * np.sqrt(x * x + y * y + z * z)
+    depth = alpha * np.sqrt(x * x + y * y + shifted * shifted) + (1 - alpha) * shifted
+    return np.stack([fu * x / depth + cu, fv * y / depth + cv], axis=1)
+
+
+def read_poses(path):
+    """T_cam_target by stamp, of rows with T_target_cam: position, then the quaternion w, x, y, z."""
+    poses = {}
+    with open(path) as file:
+        next(file)
+        for stamp, *values in csv.reader(file):
+            values = np.array(values, float)
+            R_cam_target = rotation(values[3:]).T
+            poses[int(stamp)] = (R_cam_target, -R_cam_target @ values[:3])
+    return poses
 
 
 def rotation(quaternion):
