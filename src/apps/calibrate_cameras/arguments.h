@@ -22,6 +22,7 @@ struct Arguments {
   io::RecordingOptions selection;
   pipeline::CalibrateOptions calibrate;  ///< models may be empty where init_file names them
 
+  std::string output_prefix;  ///< of the result files' names; empty: as outputPrefix() says
   bool export_poses = false;
   bool export_corners = false;
 };

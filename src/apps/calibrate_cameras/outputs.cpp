@@ -38,6 +38,9 @@ std::string folderPrefix(const std::string& folder) {
 }  // namespace
 
 std::string outputPrefix(const Arguments& arguments) {
+  if (!arguments.output_prefix.empty()) {
+    return arguments.output_prefix;
+  }
   if (fs::is_directory(arguments.recording)) {
     return folderPrefix(arguments.recording);
   }

@@ -1,0 +1,40 @@
+#include "calibrate_cameras/session.h"
+
+#include "calibrate_cameras/console.h"
+#include "calibrate_cameras/outputs.h"
+#include "common/interrupt.h"
+#include "common/program.h"
+
+namespace tartan_calib::apps {
+
+std::string commandText(const std::string& program, const std::vector<std::string>& words) {
+  std::string text = program;
+  for (const std::string& word : words) {
+    text += " " + word;
+  }
+  return text;
+}
+
+void runSession(const Arguments& arguments, const std::string& command, const SessionHooks& hooks) {
+  checkWritable(outputPrefix(arguments));
+  const Inputs inputs = openInputs(arguments, printWarning);
+  Console console(inputs);
+  pipeline::Listener listener = console.listener();
+  if (hooks.detection_solved) {
+    listener.detection_solved = [&](const pipeline::CalibrationResult& result) { hooks.detection_solved(inputs, result); };
+  }
+  const pipeline::CalibrationResult result = calibrate(inputs, listener);
+  console.printResult(result);
+  if (arguments.verbose) {
+    console.printTimes(result);
+  }
+  {
+    const UninterruptedSection files_are_written_whole;
+    console.printFiles(writeOutputs(result, arguments, inputs.options, command));
+  }
+  if (hooks.finished) {
+    hooks.finished(inputs, result);
+  }
+}
+
+}  // namespace tartan_calib::apps

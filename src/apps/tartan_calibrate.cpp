@@ -1,0 +1,85 @@
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibrate_cameras/arguments.h"
+#include "calibrate_cameras/outputs.h"
+#include "calibrate_cameras/session.h"
+#include "common/interrupt.h"
+#include "common/program.h"
+#include "tartan_calib/io/atomic_file.h"
+#include "tartan_calib/io/camchain.h"
+#include "tartan_calib/io/results_text.h"
+#include "tartan_calibrate/debug_pictures.h"
+#include "tartan_calibrate/tartan_flags.h"
+
+namespace {
+
+using namespace tartan_calib;
+namespace fs = std::filesystem;
+
+void makeFolder(const std::string& flag, const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw InputError("folder " + folder + " of --" + flag + " cannot be made (" + error.message() + "): give another one");
+  }
+}
+
+int numUsed(const pipeline::CalibrationResult& result, std::size_t camera_index) {
+  return result.cameras[camera_index].statistics.num_corners;
+}
+
+apps::SessionHooks hooksFor(const apps::TartanCommand& command) {
+  const std::string prefix = (fs::path(command.save_dir) / command.log_dest).string();
+  apps::SessionHooks hooks;
+  hooks.detection_solved = [prefix](const apps::Inputs&, const pipeline::CalibrationResult& result) {
+    const apps::UninterruptedSection files_are_written_whole;
+    io::writeFile(prefix + "0-camchain.yaml", io::camchainText(io::camchain(result)));
+    io::writeFile(prefix + "0-results-cam.txt", io::resultsText(result));
+    for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+      std::printf("Started tartan calib with %d points.\n", numUsed(result, i));
+    }
+    std::fflush(stdout);
+  };
+  hooks.finished = [command](const apps::Inputs& inputs, const pipeline::CalibrationResult& result) {
+    for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+      std::printf("Ended tartan calib with %d corners.\n", numUsed(result, i));
+    }
+    if (command.debug_modes.empty()) {
+      return;
+    }
+    const std::string& folder = command.debug_image_dir.empty() ? command.save_dir : command.debug_image_dir;
+    std::printf("Writing the pictures of --debug-modes to %s\n", folder.c_str());
+    std::fflush(stdout);
+    apps::writeDebugPictures(inputs, result, command.debug_modes, folder);
+  };
+  return hooks;
+}
+
+int run(const std::vector<std::string>& words) {
+  const apps::TartanCommand command = apps::translateTartanFlags(words);
+  if (words.empty() || command.help) {
+    std::fputs(apps::tartanHelpText().c_str(), stdout);
+    return words.empty() ? apps::kWrongUsage : apps::kSuccess;
+  }
+  apps::Arguments arguments = apps::parseArguments(command.words);
+  for (const std::string& note : command.notes) {
+    apps::printWarning(note);
+  }
+  makeFolder("save_dir", command.save_dir);
+  if (!command.debug_modes.empty() && !command.debug_image_dir.empty()) {
+    makeFolder("debug_image_dir", command.debug_image_dir);
+  }
+  arguments.output_prefix = (fs::path(command.save_dir) / (command.log_dest + "1")).string();
+  apps::runSession(arguments, apps::commandText("tartan_calibrate", words), hooksFor(command));
+  return apps::kSuccess;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  apps::installInterruptHandler();
+  return apps::runProgram([&] { return run(std::vector<std::string>(argv + 1, argv + argc)); });
+}

@@ -1,0 +1,96 @@
+#include "tartan_calibrate/tartan_flags.h"
+
+#include <gtest/gtest.h>
+
+#include "calibrate_cameras/arguments.h"
+#include "common/program.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const Words kComplete = {"--bag", "rig.bag", "--topics", "/a", "--models", "ds-none", "--target", "t.yaml"};
+
+Arguments argumentsOf(const Words& words) {
+  Words all = kComplete;
+  all.insert(all.end(), words.begin(), words.end());
+  return parseArguments(translateTartanFlags(all).words);
+}
+
+std::string usageError(const Words& words) {
+  try {
+    argumentsOf(words);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(TartanFlags, HandOnWhatIsNotTheirs) {
+  EXPECT_EQ(translateTartanFlags(kComplete).words, kComplete);
+  EXPECT_TRUE(translateTartanFlags(kComplete).notes.empty());
+}
+
+TEST(TartanFlags, HaveTartanCalibsDefaults) {
+  const TartanCommand command = translateTartanFlags({});
+  EXPECT_EQ(command.save_dir, "/data/");
+  EXPECT_EQ(command.log_dest, "log");
+  EXPECT_TRUE(command.debug_modes.empty());
+}
+
+TEST(TartanFlags, TakeDashesForUnderscoresAndShortForms) {
+  const TartanCommand command = translateTartanFlags(
+      {"--save-dir", "/tmp/a", "--log_d=b", "--debug_image_dir", "c/", "--debug-m", "none", "reprojectionpoints"});
+  EXPECT_EQ(command.save_dir, "/tmp/a");
+  EXPECT_EQ(command.log_dest, "b");
+  EXPECT_EQ(command.debug_image_dir, "c/");
+  EXPECT_EQ(command.debug_modes, Words{"reprojectionpoints"});
+  EXPECT_TRUE(command.words.empty());
+}
+
+TEST(TartanFlags, LookInViewsAloneUnlessTheCornerPredictorIsNamed) {
+  EXPECT_GT(argumentsOf({}).calibrate.max_rounds, 0);
+  EXPECT_GT(argumentsOf({"--projections", "cornerpredictor"}).calibrate.max_rounds, 0);
+  EXPECT_EQ(argumentsOf({"--projections", "none"}).calibrate.max_rounds, 0);
+  const Arguments alone = argumentsOf({"--projections", "pinhole", "--fovs", "90", "--fovs", "90"});
+  EXPECT_EQ(alone.calibrate.max_rounds, 0);
+  EXPECT_EQ(alone.calibrate.projections.pinholes.size(), 1U);
+  EXPECT_GT(argumentsOf({"--projections", "pinhole", "cornerpredictor"}).calibrate.max_rounds, 0);
+  EXPECT_EQ(argumentsOf({"--projections", "pinhole", "--max-rounds", "3"}).calibrate.max_rounds, 3);
+}
+
+TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
+  for (const Words& words : {Words{"--min-init-corners-autocomplete", "24"}, Words{"--min-tag-size-autocomplete", "0"},
+                             Words{"--refine-magnitude-reject", "2.0"}, Words{"--symmetry-edge-threshold", "10"},
+                             Words{"--polar_setting", "1"}, Words{"--polar_cutoff", "50"}, Words{"--force_all"},
+                             Words{"--outputMatlab"}, Words{"--export-dataset-dir", "x.bin"}}) {
+    const TartanCommand command = translateTartanFlags(words);
+    EXPECT_TRUE(command.words.empty()) << words[0];
+    ASSERT_EQ(command.notes.size(), 1U) << words[0];
+    EXPECT_TRUE(contains(command.notes[0], " has no effect: ")) << command.notes[0];
+  }
+}
+
+TEST(TartanFlags, TellThatTheDefaultViewLooksSideways) {
+  const auto isTold = [](const Words& words) {
+    const TartanCommand command = translateTartanFlags(words);
+    return !command.notes.empty() && contains(command.notes.back(), "-y axis");
+  };
+  EXPECT_TRUE(isTold({"--projections", "pinhole"}));
+  EXPECT_FALSE(isTold({"--projections", "pinhole", "--poses", "0", "--poses", "0"}));
+  EXPECT_FALSE(isTold({"--projections", "cube"}));
+}
+
+TEST(TartanFlags, NameWhatIsWrong) {
+  EXPECT_TRUE(contains(usageError({"--debug-modes", "everything"}), "everything"));
+  EXPECT_TRUE(contains(usageError({"--save_dir"}), "--save_dir needs a value"));
+  EXPECT_TRUE(contains(usageError({"--debug", "none"}), "ambiguous"));
+  EXPECT_TRUE(contains(usageError({"--no-such-flag"}), "no-such-flag"));
+  EXPECT_TRUE(contains(usageError({"--projections", "fisheye"}), "fisheye"));
+}
+
+}  // namespace
+}  // namespace tartan_calib::apps
