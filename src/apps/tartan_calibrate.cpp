@@ -1,4 +1,8 @@
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,8 +26,10 @@ namespace fs = std::filesystem;
 void makeFolder(const std::string& flag, const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) {
-    throw InputError("folder " + folder + " of --" + flag + " cannot be made (" + error.message() + "): give another one");
+  const std::string problem = error ? error.message() : access(folder.c_str(), W_OK) != 0 ? std::strerror(errno) : "";
+  if (!problem.empty()) {
+    throw InputError("folder " + folder + " of --" + flag + " cannot be made or written to (" + problem +
+                     "): give another one");
   }
 }
 
