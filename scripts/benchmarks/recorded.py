@@ -10,8 +10,36 @@ import re
 import numpy as np
 import yaml
 
-from benchmarks.common import (WORK, calibrate, camera, corners_per_image, difference, linked_folder, no_rounds, percent, rms, run,
-                               split_by_stamp, table, write_corners)
+from benchmarks.common import (WORK, calibrate, camera, corners_per_image, difference, linked_folder, no_rounds, percent,
+                               read_corners, rms, run, split_by_stamp, table, write_corners)
+from benchmarks.residuals import residuals_px
+from benchmarks.truth import board_point
+
+
+def listed_corners(folder, path):
+    """The other detector's corners that come with d435i_rgb, as a corner file; their places on the board tell their ids."""
+    rows = []
+    for file in sorted(folder.glob("*.csv")):
+        with file.open() as lines:
+            for line in csv.DictReader(lines):
+                size, spacing = float(line["tag_size"]), float(line["tag_spacing"])
+                # In units of half a pitch corners are at 0, 1.54, 2, 3.54, ... for a spacing of 0.3.
+                col, row = (int(2 * float(line[axis]) / (size * (1 + spacing)) + 0.25) for axis in ("p_x", "p_y"))
+                rows.append({"camera": 0, "stamp_ns": line["#ts"], "corner_id": 2 * int(line["tag_cols"]) * row + col,
+                             "u_px": line["kp_x"], "v_px": line["kp_y"]})
+    write_corners(path, ["# cam0 640 480 /cam0/image_raw"], rows)
+
+
+def compare_with_list(data, record, found):
+    """Corner files, as (label, path), and the list of d435i_rgb against the calibrated model."""
+    target = yaml.safe_load((data / "target.yaml").read_text())
+    listed = WORK / "d435i-listed.csv"
+    listed_corners(data / "corners", listed)
+    rows = []
+    for label, path in [*found, ("the recording's list", listed)]:
+        distances = np.array(list(residuals_px(record, path, lambda corner: board_point(target, corner)).values()))
+        rows.append([label, len(read_corners(path)[1]), np.sum(distances > 1.0), f"{np.median(distances):.3f}"])
+    table(["", "corners", "> 1 px from the calibrated model", "median distance [px]"], rows)
 
 
 def d435i(settings):
@@ -19,14 +47,18 @@ def d435i(settings):
     folder = linked_folder("d435i", settings.data / "d435i_rgb" / "images")
     bag = WORK / "d435i.bag"
     run("make_bag", "--folder", folder, "--output-bag", bag)
-    rows = []
+    rows, found = [], []
     for label, flags in no_rounds("d435i"):
         chain, record, seconds = calibrate(WORK / "d435i", bag, settings.data / "d435i_rgb" / "target.yaml", ["pinhole-radtan"],
-                                           ["/cam0/image_raw"], *flags)
+                                           ["/cam0/image_raw"], "--export-corners", *flags)
+        corners = WORK / f"{label.replace(', ', '-').replace(' ', '-')}.csv"
+        os.replace(WORK / "d435i-corners.csv", corners)
+        found.append((label, corners))
         fu, fv = chain["cam0"]["intrinsics"][:2]
         rows.append([label, f"{rms(record):.3f}", f"{fu:.2f} ({percent(fu, 608.3)})", f"{fv:.2f} ({percent(fv, 610.9)})",
                      camera(record)["corners"]["used"], f"{seconds:.1f}"])
     table(["", "rms [px], asked <= 0.30", "fu [px], 608.3 within 1 %", "fv [px], 610.9 within 1 %", "corners", "time [s]"], rows)
+    compare_with_list(settings.data / "d435i_rgb", record, found)
 
 
 PUBLISHED_EUROC = [

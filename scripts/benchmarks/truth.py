@@ -57,14 +57,17 @@ class Score:
         px = np.array([[float(corner["u_px"]), float(corner["v_px"])] for corner in corners]).reshape(-1, 2)
         known = rows >= 0
         self.row = rows[known]
-        self.error_px = np.hypot(*(px[known] - truth.px[self.row]).T)
+        errors = px[known] - truth.px[self.row]
+        self.error_px = np.hypot(*errors.T)
         hidden = truth.hidden[self.row]
         off = ~hidden & (self.error_px > MAX_ERROR_PX)
         self.num_absent, self.num_hidden, self.num_off = np.sum(~known), np.sum(hidden), np.sum(off)
         right = ~hidden & ~off & truth.asked[self.row]
         self.found = np.zeros(len(truth.px), bool)  # which of the truth's corners, of those asked for
         self.found[self.row[right]] = True
+        self.found_row = self.row[right]
         self.found_error_px = self.error_px[right]
+        self.found_bound_ratio = bound_ratios(errors[right], truth.cov_px2[self.found_row])
 
     @property
     def num_false(self):
@@ -73,6 +76,13 @@ class Score:
     @property
     def false_ratio(self):
         return self.num_false / max(1, self.num_reported)
+
+
+def bound_ratios(errors, bounds_px2):
+    """Errors in units of their Cramer-Rao bounds, such that the median of the best possible estimate is 1: its distances in
+    units of the bound have the median sqrt(2 ln 2)."""
+    squares = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(bounds_px2), errors)
+    return np.sqrt(squares / (2.0 * np.log(2.0)))
 
 
 def bands(max_deg):
