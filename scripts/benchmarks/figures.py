@@ -12,7 +12,7 @@ from PIL import Image
 
 from benchmarks.common import WORK
 from benchmarks.detect_aruco import images
-from benchmarks.detectors import RECORDINGS, available
+from benchmarks.detectors import RECORDINGS, available, ours
 from benchmarks.features import scores
 from benchmarks.truth import Score, Truth, bands, board_point, project
 
@@ -132,8 +132,36 @@ def plot_symmetry(recording, stamp_ns, corner_id):
     save(figure, "symmetry_cost")
 
 
+CROP_PX = 12  # around a missed corner
+CROPS = (4, 9)
+
+
+def plot_missed(recording):
+    """Pictures of corners that all rounds miss, spread over the polar angle."""
+    truth = Truth(recording)
+    missed = np.flatnonzero(truth.asked & ~Score(truth, ours(recording, "rounds").corners).found)
+    missed = missed[np.argsort(-truth.polar_deg[missed])]
+    shown = missed[np.unique(np.linspace(0, len(missed) - 1, CROPS[0] * CROPS[1]).astype(int))]
+    stamps = set(truth.stamp_ns[shown].tolist())
+    pictures = {stamp: gray for stamp, gray in images(recording.files[0]) if stamp in stamps}
+    figure, axes = plt.subplots(*CROPS, figsize=(12, 6.4))
+    for axis in axes.flat:
+        axis.axis("off")
+    for axis, row in zip(axes.flat, shown):
+        u, v = truth.px[row]
+        axis.imshow(pictures[truth.stamp_ns[row]], cmap="gray")
+        axis.plot(u, v, "o", markersize=14, markerfacecolor="none", markeredgecolor="#E69F00", markeredgewidth=1.5)
+        axis.set(xlim=(u - CROP_PX, u + CROP_PX), ylim=(v + CROP_PX, v - CROP_PX))
+        axis.set_title(f"{truth.polar_deg[row]:.0f}°, {truth.motion_px[row]:.1f} px", fontsize=9)
+    figure.suptitle(f"{recording.name}: {len(shown)} of the {len(missed)} corners that all rounds miss; polar angle, motion during "
+                    "the exposure")
+    figure.tight_layout()
+    save(figure, f"missed_{recording.name}")
+
+
 def draw(settings):
     plot_rates(settings)
     for recording in RECORDINGS:
         plot_scatter(recording)
+        plot_missed(recording)
     plot_symmetry(RECORDINGS[0], 1600000000250000000, 109)

@@ -31,6 +31,7 @@ class Truth:
         self.hidden = np.array([row["visibility"] == "hidden" for row in seen])
         visible = np.array([row["visibility"] == "visible" for row in seen])
         self.asked = visible & (np.array([float(row["neighbour_px"]) for row in seen]) >= MIN_NEIGHBOUR_PX)
+        self.motion_px = np.array([float(row["motion_px"]) for row in seen])  # way during the exposure
         self.T_cam_target = read_poses(f"{base}-truth-poses.csv")  # (rotation, translation) by stamp
         self.polar_deg, self.azimuth_deg = self._angles(yaml.safe_load(target.read_text()))
         self.row_of = {key: row for row, key in enumerate(zip(self.stamp_ns.tolist(), self.corner_id.tolist()))}

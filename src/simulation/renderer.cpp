@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <deque>
 #include <future>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -48,6 +49,20 @@ void hideBehindOccluder(std::vector<TrueCorner>& corners, const Exposure& exposu
   }
 }
 
+void measureMotion(std::vector<TrueCorner>& corners, const Scene& scene, const SceneCamera& camera,
+                   const SceneFrame& frame) {
+  const std::vector<Eigen::Vector3d> points = target::cornerPoints(scene.target);
+  const auto place = [&](const TrueCorner& corner, double s) {
+    const geometry::Rigid3 T_cam_target = camera.T_cam_rig * frame.T_rig_target * geometry::expRigid(s * frame.motion);
+    return camera::project(camera.camera.model, T_cam_target * points[static_cast<std::size_t>(corner.corner_id)]);
+  };
+  for (TrueCorner& corner : corners) {
+    const auto start_px = place(corner, -0.5);
+    const auto end_px = place(corner, 0.5);
+    corner.motion_px = start_px && end_px ? (*end_px - *start_px).norm() : std::numeric_limits<double>::infinity();
+  }
+}
+
 }  // namespace
 
 class Renderer::Studio {
@@ -78,6 +93,7 @@ class Renderer::Studio {
       corner.hidden |= inside_px < 0.0;
     }
     hideBehindOccluder(view.corners, exposure);
+    measureMotion(view.corners, scene_, camera, scene_.frames[frame_index]);
     const InformationBound bound(exposure, scene_, camera.camera, view.T_cam_target);
     for (TrueCorner& corner : view.corners) {
       corner.bound_px2 = bound.ofCorner(corner);

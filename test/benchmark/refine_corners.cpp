@@ -60,7 +60,8 @@ std::vector<observation::Corner> refine(const cv::Mat& gray, const target::Targe
   for (const observation::Corner& corner : corners) {
     const Eigen::Vector3d& point = points[static_cast<std::size_t>(corner.corner_id)];
     const auto project = [&](const Eigen::Vector2d& offset_m) -> Eigen::Vector2d {
-      const auto px = camera::project(camera.model, T_cam_target * (point + Eigen::Vector3d(offset_m.x(), offset_m.y(), 0.0)));
+      const auto px =
+          camera::project(camera.model, T_cam_target * (point + Eigen::Vector3d(offset_m.x(), offset_m.y(), 0.0)));
       return px ? *px : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
     };
     const Eigen::Vector2d origin_px = project(Eigen::Vector2d::Zero());

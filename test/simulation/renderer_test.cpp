@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -203,6 +204,39 @@ TEST(Renderer, CallsACornerHiddenWhereTheHandCoversItAndNotWhereItIsOnlyNear) {
   }
   EXPECT_GE(num_hidden, 3);
   EXPECT_GE(num_near, 1);
+}
+
+TEST(Renderer, saysHowFarCornersMoveDuringTheExposure) {
+  Scene scene = stillScene();
+  SceneFrame& frame = scene.frames[0];
+  frame.motion << 0.02, -0.01, 0.015, 0.03, -0.02, 0.05;
+  const auto moving = Renderer(scene).render(0).views[0].corners;
+  const auto corners_at = [&](double s) {
+    return projectCorners(scene.target, scene.cameras[0].camera,
+                          scene.cameras[0].T_cam_rig * frame.T_rig_target * geometry::expRigid(s * frame.motion));
+  };
+  std::map<int, Eigen::Vector2d> start_px;
+  for (const TrueCorner& corner : corners_at(-0.5)) {
+    start_px[corner.corner_id] = corner.px;
+  }
+  std::map<int, double> way_px;
+  for (const TrueCorner& corner : corners_at(0.5)) {
+    if (start_px.count(corner.corner_id) > 0) {
+      way_px[corner.corner_id] = (corner.px - start_px[corner.corner_id]).norm();
+    }
+  }
+  int num_compared = 0;
+  for (const TrueCorner& corner : moving) {
+    if (way_px.count(corner.corner_id) > 0) {
+      EXPECT_NEAR(corner.motion_px, way_px[corner.corner_id], 1e-9);
+      num_compared += corner.motion_px > 1.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(num_compared, 20);
+  frame.motion.setZero();
+  for (const TrueCorner& corner : Renderer(scene).render(0).views[0].corners) {
+    EXPECT_EQ(corner.motion_px, 0.0);
+  }
 }
 
 TEST(Renderer, isBlackOutsideOfTheLensCircleAndSaysSoOfItsCorners) {

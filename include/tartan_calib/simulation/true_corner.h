@@ -20,6 +20,7 @@ struct TrueCorner {
   bool visible = true;                 ///< inside of the image and of the lens' circle, and clear of occluders
   bool hidden = false;                 ///< not in the picture: outside of the lens' circle, or behind an occluder
   double neighbour_distance_px = 0.0;  ///< to the nearest other corner of the board
+  double motion_px = 0.0;              ///< from where it is at the start of the exposure to where at the end
   /// Cramer-Rao bound: no unbiased estimate from the pixels around this corner can have a smaller covariance. Known for
   /// the pictures of a Renderer only.
   Eigen::Matrix2d bound_px2 = kNoInformationPx2 * Eigen::Matrix2d::Identity();

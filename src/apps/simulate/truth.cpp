@@ -87,7 +87,7 @@ std::string targetText(const target::Target& target) {
 }
 
 Truth::Truth(const simulation::Scene& scene) : scene_(scene) {
-  visibility_ << "camera,stamp_ns,corner_id,visibility,neighbour_px\n" << std::fixed << std::setprecision(2);
+  visibility_ << "camera,stamp_ns,corner_id,visibility,neighbour_px,motion_px\n" << std::fixed << std::setprecision(2);
   for (const simulation::SceneCamera& camera : scene.cameras) {
     pipeline::CameraCorners corners;
     corners.topic = imageTopic(cameras_.size());
@@ -105,7 +105,7 @@ void Truth::add(const simulation::RenderedFrame& frame) {
     for (const simulation::TrueCorner& corner : frame.views[camera].corners) {
       image.corners.push_back({corner.corner_id, corner.px, corner.bound_px2, corner.visible});
       visibility_ << camera << ',' << frame.stamp_ns << ',' << corner.corner_id << ',' << visibility(corner) << ','
-                  << corner.neighbour_distance_px << '\n';
+                  << corner.neighbour_distance_px << ',' << corner.motion_px << '\n';
     }
     cameras_[camera].images.push_back(image);
     ++cameras_[camera].num_images;
