@@ -16,15 +16,15 @@ namespace {
 
 // Half side of the window of refinement, in squares: far enough from the next corners for their blur to stay outside. On
 // rendered boards with small or blurred squares the error is half of that of the window of 0.2 that suits marker boards.
-constexpr double kHalfWindow_squares = 0.3;
+constexpr double kHalfWindowSquares = 0.3;
 // Lattices with a smaller share of the board's corners are not tried to be extended to the whole board.
 constexpr double kMinStart_ratio = 0.2;
 // A corner without a saddle is looked for where its neighbours predict it, so far around [squares].
-constexpr double kSearch_squares = 0.15;
+constexpr double kSearchSquares = 0.15;
 // Grid of samples around a corner on which its squares are compared, and how alike they must be: 1 is a perfect corner,
 // 0 something else. Noise of half of the contrast leaves 0.86.
 constexpr int kSamplesPerSquare = 5;
-constexpr double kSampleSpacing_squares = 0.06;
+constexpr double kSampleSpacingSquares = 0.06;
 constexpr double kMinLikeness = 0.8;
 
 /// One corner on its way from a guess to sub-pixel.
@@ -50,7 +50,7 @@ class BoardRefiner {
       return std::nullopt;
     }
     const Guess guess = seen ? Guess{saddle->second.px, max_shift_px * saddle->second.scale_px, *map}
-                             : Guess{map->centre_px(), kSearch_squares * map->minSpacing_px(), *map};
+                             : Guess{map->centre_px(), kSearchSquares * map->minSpacing_px(), *map};
     const auto corner = refine(guess);
     return corner && likeness(place, corner->px, *map) > kMinLikeness ? corner : std::nullopt;
   }
@@ -58,7 +58,7 @@ class BoardRefiner {
  private:
   std::optional<RefinedCorner> refine(const Guess& guess) const {
     RefineOptions options;
-    options.half_window = kHalfWindow_squares;
+    options.half_window = kHalfWindowSquares;
     options.max_shift_px = guess.max_shift_px;
     const auto offset_px = [&guess](const Eigen::Vector2d& offset) { return guess.map.offset_px(offset); };
     return refineBySymmetry(gray_, guess.px, offset_px, options);
@@ -71,7 +71,7 @@ class BoardRefiner {
     double mean = 0.0;
     for (int i = -kSamplesPerSquare; i <= kSamplesPerSquare; ++i) {
       for (int j = -kSamplesPerSquare; j <= kSamplesPerSquare; ++j) {
-        const Eigen::Vector2d at = px + map.offset_px(kSampleSpacing_squares * Eigen::Vector2d(i, j));
+        const Eigen::Vector2d at = px + map.offset_px(kSampleSpacingSquares * Eigen::Vector2d(i, j));
         if (i == 0 || j == 0) {
           continue;
         }
