@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "tartan_calib/error.h"
 
 namespace tartan_calib::apps {
@@ -46,6 +49,13 @@ TEST(CompareRigs, ALongerFocalLengthShowsMostAtTheRim) {
   EXPECT_LT(narrow.max_px, 0.3 * comparison.max_px);
 }
 
+TEST(CompareRigs, TheDifferenceIsInPixels) {
+  constexpr double kAngle_rad = 0.2;
+  const auto comparison = compareRigs({{fisheye(200.0)}}, {{fisheye(202.0)}}, {kAngle_rad, std::nullopt, {}}).front();
+  // The start of a double sphere maps an angle a to 2 tan(a / 2); the grid ends within a cell of the largest angle.
+  EXPECT_NEAR(comparison.max_px, 2.0 * 2.0 * std::tan(0.5 * kAngle_rad), 0.03);
+}
+
 /// One corner at each of these pixels.
 std::vector<pipeline::CameraCorners> recordingOf(const std::vector<Eigen::Vector2d>& pixels) {
   pipeline::CameraCorners corners;
@@ -75,6 +85,19 @@ TEST(CompareRigs, OtherRigsAreRefused) {
   larger.cameras[0].camera.width = 1000;
   EXPECT_THROW(compareRigs({{fisheye(200.0)}}, larger, kWide), InputError);
   EXPECT_THROW(compareRigs({{fisheye(200.0)}}, {{fisheye(200.0)}}, {1.5, std::nullopt, {{}}}), InputError);
+}
+
+TEST(ComparisonText, NamesEveryCameraAndItsDifferences) {
+  io::Camchain a;
+  a.rig.cameras = {fisheye(200.0), fisheye(210.0)};
+  io::Camchain b = a;
+  b.rig.cameras[1].T_cam_rig.translation.x() = 5e-3;
+  const std::string text = comparisonText(a, b, kWide);
+  for (const char* part :
+       {"cam0, ds-none and ds-none", "cam1, ds-none and ds-none", "projection to 85.9 degrees: differs by 0.000000 px",
+        "place on the rig: differs by 0.000000 mrad and 5.000000 mm"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
+  }
 }
 
 }  // namespace

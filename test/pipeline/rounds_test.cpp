@@ -46,6 +46,37 @@ TEST(RoundsTest, AnImageWithTooFewTagsForRoundZeroTakesPartAfterwards) {
   EXPECT_TRUE(takesPart(run(1), kLeavingImage));
 }
 
+/// The recording, of which one image shows nothing from the second pass on.
+CameraStream streamThatLoses(std::size_t image_index) {
+  CameraStream stream = wideStream();
+  stream.open = [image_index, open = stream.open, num_passes = 0]() mutable -> ImageSource {
+    return [image_index, is_lost = num_passes++ > 0, source = open(), next = std::size_t{0}]() mutable {
+      std::optional<StampedImage> image = source();
+      if (is_lost && next++ == image_index) {
+        image->load = [] { return cv::Mat(640, 640, CV_8UC1, cv::Scalar(128)); };
+      }
+      return image;
+    };
+  };
+  return stream;
+}
+
+TEST(RoundsTest, CornersThatAreNotFoundAgainAreKeptWhereTheyFit) {
+  constexpr std::size_t kLostImage = 3;
+  CalibrateOptions options;
+  options.models = {"ds-none"};
+  options.max_rounds = 0;
+  options.min_tags = kWideMinTags;
+  const auto num_corners = [&] {
+    const CalibrationResult result = calibrate({streamThatLoses(kLostImage)}, target::AprilGrid(), options);
+    return observedCorners(result).front().images[kLostImage].corners.size();
+  };
+  const std::size_t num_before = num_corners();
+  EXPECT_GT(num_before, 100U);
+  options.max_rounds = 1;
+  EXPECT_EQ(num_corners(), num_before);
+}
+
 TEST(RoundsTest, CornersKnowTheRoundThatSawThemFirst) {
   const auto count = [](const CalibrationResult& result, int round) {
     int corners = 0;
