@@ -73,6 +73,10 @@ TEST(Arguments, SetEveryOption) {
                                           "--threads",
                                           "3",
                                           "--export-corners",
+                                          "--min-tags",
+                                          "3",
+                                          "--min-border-distance",
+                                          "1.5",
                                           "--corners",
                                           "c.csv"});
   EXPECT_EQ(arguments.selection.window->from_s, 2.5);
@@ -92,6 +96,8 @@ TEST(Arguments, SetEveryOption) {
   EXPECT_TRUE(arguments.calibrate.solve.estimate_board_warp);
   EXPECT_EQ(arguments.calibrate.solve.linear_solver, calibration::LinearSolver::kSparse);
   EXPECT_EQ(arguments.calibrate.num_threads, 3);
+  EXPECT_EQ(arguments.calibrate.min_tags, 3);
+  EXPECT_EQ(arguments.calibrate.detector.min_border_distance_px, 1.5);
   EXPECT_TRUE(arguments.export_corners);
   EXPECT_EQ(arguments.corners_file, "c.csv");
 }
@@ -143,6 +149,8 @@ TEST(Arguments, ThatAreWrongAreNamed) {
   EXPECT_TRUE(contains(usageError(commandWith({"--bag-from-to", "1"})), "--bag-from-to"));
   EXPECT_TRUE(contains(usageError(commandWith({"--min-views-outlier", "0"})), "--min-views-outlier"));
   EXPECT_TRUE(contains(usageError(commandWith({"--threads", "-2"})), "--threads"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--min-tags", "0"})), "--min-tags"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--min-border-distance", "-1"})), "--min-border-distance"));
   EXPECT_TRUE(contains(usageError(commandWith({"--linear-solver", "qr"})), "qr"));
   EXPECT_TRUE(contains(usageError(commandWith({"--init", "a.yaml", "--fix", "camera1"})), "camera1"));
   EXPECT_TRUE(contains(usageError(commandWith({"--fix", "cam1"})), "--init"));

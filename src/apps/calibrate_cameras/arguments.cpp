@@ -64,6 +64,20 @@ void applyFix(const Words& parts, calibration::SolveOptions& solve) {
   }
 }
 
+void applyFilters(const Flags& flags, pipeline::CalibrateOptions& options) {
+  detection::DetectorOptions& detector = options.detector;
+  detector.min_border_distance_px = flags.get("min-border-distance", detector.min_border_distance_px);
+  if (!(detector.min_border_distance_px >= 0.0)) {
+    throw UsageError("--min-border-distance must be a number of pixels, not negative");
+  }
+  if (flags.has("min-tags")) {
+    options.min_tags = flags.get<int>("min-tags");
+    if (*options.min_tags < 1) {
+      throw UsageError("--min-tags must be a positive integer");
+    }
+  }
+}
+
 pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
   constexpr double kNsPerSecond = 1e9;
   constexpr double kMaxSync_s = 1e6;
@@ -92,6 +106,7 @@ pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
     throw UsageError("--max-rounds must not be negative; 0 leaves the rounds out");
   }
   options.projections = projectionsFrom(flags);
+  applyFilters(flags, options);
   solve.linear_solver = linearSolver(flags.get<std::string>("linear-solver", "auto"));
   applyFix(flags.get<Words>("fix"), solve);
   return options;

@@ -32,6 +32,7 @@ po::options_description ownOptions() {
   options.add_options()("init", po::value<std::string>(), "")("fix", po::value<Words>()->multitoken()->composing(), "")(
       "estimate-board-warp", "")("linear-solver", po::value<std::string>(), "")("threads", po::value<int>(), "")(
       "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "")("max-rounds", po::value<int>(), "")(
+      "min-tags", po::value<int>(), "")("min-border-distance", po::value<double>(), "")(
       "projections", po::value<Words>()->multitoken(), "")("fovs", columns(), "")("poses", columns(), "")("resolutions",
                                                                                                           columns(), "");
   return options;

@@ -29,6 +29,8 @@ Start from a calibration
   --fix WHAT                intrinsics, extrinsics or camN: keeps them as in --init; may be repeated
 
 Corners
+  --min-tags N              AprilGrid: images with fewer tags wait for the rounds (1 more than the board's longer side has)
+  --min-border-distance PX  tags closer to the edge of the image are left to the rounds (4)
   --max-rounds N            go through the images again with the calibrated model and look where it says corners are, at
                             most so often (5); 0: only the tags that are detected without a model, as Kalibr
   --projections P [P ...]   also detect in virtual views, remapped with the model: cube (five faces), homography (rectified
