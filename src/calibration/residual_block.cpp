@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
+
+#include "tartan_calib/calibration/board_bend.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -135,17 +136,9 @@ LocalTerms linearize(const Model& model, const ResidualBlock& block) {
 }  // namespace
 
 WarpedBoard::WarpedBoard(const std::vector<Eigen::Vector3d>& flat_points) : flat_points_(flat_points), points_(flat_points) {
-  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array2d high = -low;
+  const BoardBend bend(flat_points);
   for (const Eigen::Vector3d& p : flat_points_) {
-    low = low.min(p.head<2>().array());
-    high = high.max(p.head<2>().array());
-  }
-  // A board without extent along an axis does not bend along it.
-  const Eigen::Array2d extent = (high - low).max(std::numeric_limits<double>::min());
-  for (const Eigen::Vector3d& p : flat_points_) {
-    const Eigen::Array2d centred = 2.0 * (p.head<2>().array() - low) / extent - 1.0;
-    shapes_.emplace_back(1.0 - centred.square());
+    shapes_.push_back(bend.at(p.head<2>()));
   }
 }
 

@@ -16,6 +16,13 @@ struct CornerSearch {
   double min_correlation = 0.0;
 };
 
+/// Where the refinement of a corner begins.
+struct CornerSeed {
+  int corner_id = -1;
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  double half_window_m = 0.0;
+};
+
 /// A corner of the board that should be in the image, and what was found there.
 struct CornerCandidate {
   int corner_id = -1;
@@ -23,7 +30,7 @@ struct CornerCandidate {
   int col = 0;
   XCornerTemplate expected;
   double neighbour_px = 0.0;          ///< to the nearest of its neighbours on the lattice
-  std::optional<XCornerMatch> match;  ///< set together with refined
+  std::optional<XCornerMatch> match;  ///< of the image filter: set together with refined
   std::optional<RefinedCorner> refined;
 
   bool isFound() const { return refined.has_value(); }

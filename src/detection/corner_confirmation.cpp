@@ -16,7 +16,8 @@ constexpr double kUnconfirmedCorrelation = 0.9;
 constexpr double kMinContrastShare = 0.3;
 
 std::size_t tagOf(const target::AprilGrid& grid, const CornerCandidate& candidate) {
-  return static_cast<std::size_t>((candidate.row / 2) * grid.tag_cols + candidate.col / 2);
+  const int tag_index = (candidate.row / 2) * grid.tag_cols + candidate.col / 2;
+  return static_cast<std::size_t>(tag_index);
 }
 
 /// By tag: whether the payload is where one of the found corners says.

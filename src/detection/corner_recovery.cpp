@@ -7,8 +7,11 @@
 
 #include "corner_candidate.h"
 #include "corner_confirmation.h"
+#include "quad_finder.h"
+#include "quad_match.h"
 #include "shift_field.h"
 #include "tag_payload.h"
+#include "tartan_calib/error.h"
 
 namespace tartan_calib::detection {
 namespace {
@@ -26,7 +29,10 @@ constexpr double kInnerCorrelation = 0.9;
 /// Distance [px] from a corner to the nearest of its four neighbours on the lattice.
 double nearestNeighbour(const std::vector<std::optional<Eigen::Vector2d>>& predicted, const target::Lattice& lattice,
                         int row, int col) {
-  const auto at = [&](int r, int c) { return predicted[static_cast<std::size_t>(r * lattice.cols + c)]; };
+  const auto at = [&](int r, int c) {
+    const int corner_id = r * lattice.cols + c;
+    return predicted[static_cast<std::size_t>(corner_id)];
+  };
   double nearest_px = std::numeric_limits<double>::infinity();
   for (const auto& [dr, dc] : {std::pair(0, 1), std::pair(0, -1), std::pair(1, 0), std::pair(-1, 0)}) {
     const bool exists = row + dr >= 0 && row + dr < lattice.rows && col + dc >= 0 && col + dc < lattice.cols;
@@ -47,12 +53,15 @@ CornerRecovery::CornerRecovery(const target::Target& target, const RecoveryOptio
       half_window_m_(options.symmetry_window * target::symmetricHalfWidth(target)) {
   if (const auto* grid = std::get_if<target::AprilGrid>(&target_)) {
     payload_ = std::make_shared<const TagPayload>(*grid);
+  } else if (options.filter == CornerFilter::kQuads) {
+    throw InputError("corners can be filtered by quadrilaterals on an AprilGrid only, whose tags are some");
   }
 }
 
 std::vector<observation::Corner> CornerRecovery::recover(const cv::Mat& gray, const BoardMap& map) const {
-  std::vector<CornerCandidate> candidates = recoverCandidates(gray, map, 1);
-  if (target::darkDiagonal(target_, 0) == 0) {
+  const bool on_quads = options_.filter == CornerFilter::kQuads;
+  std::vector<CornerCandidate> candidates = on_quads ? recoverOnQuads(gray, map) : recoverCandidates(gray, map, 1);
+  if (!on_quads && target::darkDiagonal(target_, 0) == 0) {
     // The print may be either way round; the wrong way finds nothing.
     const auto found = [](const CornerCandidate& candidate) { return candidate.isFound(); };
     std::vector<CornerCandidate> inverted = recoverCandidates(gray, map, -1);
@@ -81,6 +90,22 @@ std::vector<CornerCandidate> CornerRecovery::recoverCandidates(const cv::Mat& gr
   dropDeviating(options_.max_field_deviation_px, candidates);
   if (const auto* grid = std::get_if<target::AprilGrid>(&target_)) {
     dropUnconfirmed(gray, map, *grid, *payload_, candidates);
+  }
+  return candidates;
+}
+
+std::vector<CornerCandidate> CornerRecovery::recoverOnQuads(const cv::Mat& gray, const BoardMap& map) const {
+  const auto& grid = std::get<target::AprilGrid>(target_);
+  std::vector<std::optional<Eigen::Vector2d>> predicted_px;
+  for (const Eigen::Vector3d& point : corner_points_) {
+    predicted_px.push_back(map(point.head<2>()));
+  }
+  std::vector<CornerCandidate> candidates;
+  for (const auto& [corner_id, px] : matchQuads(findQuads(gray), grid, predicted_px, options_.max_quad_distance_px)) {
+    CornerCandidate candidate;
+    candidate.corner_id = corner_id;
+    candidate.refined = refineAt(gray, map, {corner_id, px, half_window_m_});
+    candidates.push_back(candidate);
   }
   return candidates;
 }
@@ -135,19 +160,25 @@ void CornerRecovery::findWithin(const cv::Mat& gray, const BoardMap& map, const 
   if (!match || match->correlation < search.min_correlation || match->contrast < options_.min_contrast) {
     return;
   }
-  const Eigen::Vector2d corner_m = corner_points_[static_cast<std::size_t>(candidate.corner_id)].head<2>();
-  const Eigen::Vector2d origin_px = candidate.expected.px;
-  const auto offset_map = [&](const Eigen::Vector2d& offset_m) -> Eigen::Vector2d {
-    const auto px = map(corner_m + offset_m);
-    return px ? Eigen::Vector2d(*px - origin_px) : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  };
-  RefineOptions refine;
-  refine.half_window = search.half_window_m;
-  const auto refined = refineBySymmetry(gray, match->px, offset_map, refine);
+  const auto refined = refineAt(gray, map, {candidate.corner_id, match->px, search.half_window_m});
   if (refined) {
     candidate.match = match;
     candidate.refined = refined;
   }
+}
+
+std::optional<RefinedCorner> CornerRecovery::refineAt(const cv::Mat& gray, const BoardMap& map,
+                                                      const CornerSeed& seed) const {
+  const Eigen::Vector2d corner_m = corner_points_[static_cast<std::size_t>(seed.corner_id)].head<2>();
+  const auto origin_px = map(corner_m);
+  const auto offset_map = [&](const Eigen::Vector2d& offset_m) -> Eigen::Vector2d {
+    const auto px = map(corner_m + offset_m);
+    return px && origin_px ? Eigen::Vector2d(*px - *origin_px)
+                           : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  };
+  RefineOptions refine;
+  refine.half_window = seed.half_window_m;
+  return refineBySymmetry(gray, seed.px, offset_map, refine);
 }
 
 void CornerRecovery::findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<CornerCandidate>& candidates) const {

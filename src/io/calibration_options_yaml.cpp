@@ -82,6 +82,7 @@ void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target:
   }
   yaml.add("approx_sync_s", yamlFloat(static_cast<double>(options.approx_sync_ns) * kSecondsPerNanosecond));
   yaml.add("max_rounds", std::to_string(options.max_rounds));
+  yaml.add("corner_filter", options.recovery.filter == detection::CornerFilter::kQuads ? "quads" : "image");
   yaml.open("detector");
   yaml.add("min_border_distance_px", yamlFloat(options.detector.min_border_distance_px));
   yaml.add("max_hamming", std::to_string(options.detector.max_hamming));

@@ -192,13 +192,16 @@ std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraSt
   const calibration::Solution& solution = result_.solution;
   const BoardPoses poses(solution, options_.approx_sync_ns);
   const detection::CornerRecovery recovery(target_, options_.recovery);
-  const RoundStart start{solution, poses, target_points_};
+  const std::vector<Eigen::Vector3d> bent_points = calibration::warpedPoints(target_points_, solution.board_warp_m);
+  const BoardShape shape{calibration::BoardBend(target_points_), solution.board_warp_m};
+  const RoundStart start{solution, poses, bent_points, shape};
+  searched_.resize(streams.size());
   const double half_window_m = options_.recovery.symmetry_window * target::symmetricHalfWidth(target_);
   std::vector<CameraCorners> recovered;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     begin(Stage::kRecover, static_cast<int>(i));
     const ViewDetection views(solution.rig.cameras[i].camera, target_, options_.projections, options_.detector);
-    const RoundSearch search{options_.max_rounds > 0 ? &recovery : nullptr, views, half_window_m};
+    const RoundSearch search{options_.max_rounds > 0 ? &recovery : nullptr, views, half_window_m, searched_[i]};
     recovered.push_back(recoverCorners(streams[i], static_cast<int>(i), search, start, corners_[i], options_, listener_));
     end();
   }

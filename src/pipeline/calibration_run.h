@@ -3,6 +3,7 @@
 #include <chrono>
 #include <vector>
 
+#include "search_history.h"
 #include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::pipeline {
@@ -50,6 +51,7 @@ class CalibrationRun {
   std::vector<std::vector<observation::CameraView>> usable_;  ///< by camera, those that take part
   std::vector<camera::Camera> started_;
   std::optional<calibration::Rig> known_rig_;  ///< extrinsics to start from
+  std::vector<SearchHistory> searched_;        ///< by camera
   CalibrationResult result_;
   Progress stage_;
   Clock::time_point stage_begin_;

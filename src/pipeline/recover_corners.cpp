@@ -20,21 +20,6 @@ constexpr double kKeptWithin_px = 1.0;
 /// Corners needed to turn a guessed pose into an estimated one.
 constexpr std::size_t kMinPoseCorners = 8;
 
-detection::BoardMap boardMap(const camera::Camera& camera, const geometry::Rigid3& T_cam_target) {
-  return std::visit(
-      [&T_cam_target](const auto& model) -> detection::BoardMap {
-        const Eigen::Matrix3d R = T_cam_target.rotation.toRotationMatrix();
-        return [model, R, t = T_cam_target.translation](const Eigen::Vector2d& p_m) -> std::optional<Eigen::Vector2d> {
-          Eigen::Vector2d px;
-          if (!model.project(R.leftCols<2>() * p_m + t, px)) {
-            return std::nullopt;
-          }
-          return px;
-        };
-      },
-      camera.model);
-}
-
 std::vector<Corner> joined(std::vector<Corner> corners, const std::vector<Corner>& more) {
   corners.insert(corners.end(), more.begin(), more.end());
   return corners;
@@ -58,6 +43,11 @@ void keepEarlier(const std::vector<Corner>& earlier, const std::set<int>& used, 
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.corner_id < b.corner_id; });
 }
 
+struct RecoveredImage {
+  CameraView view;
+  std::optional<SearchedImage> searched;  ///< empty where the image was left alone
+};
+
 /// One camera's images in one round. Const: images are worked on by several threads.
 class ImageRecovery {
  public:
@@ -78,10 +68,12 @@ class ImageRecovery {
     }
   }
 
-  CameraView recover(const StampedImage& image) const {
-    CameraView view{camera_index_, image.stamp_ns, earlierIn(image.stamp_ns)};
-    if (search_.views.empty() && !poseOf(image.stamp_ns, view.corners)) {
-      return view;
+  RecoveredImage recover(const StampedImage& image) const {
+    RecoveredImage result{{camera_index_, image.stamp_ns, earlierIn(image.stamp_ns)}, {}};
+    CameraView& view = result.view;
+    const auto T_cam_target = poseOf(image.stamp_ns, view.corners);
+    if (T_cam_target ? !needsSearch(image.stamp_ns, *T_cam_target) : search_.views.empty()) {
+      return result;
     }
     try {
       const cv::Mat gray = image.load();
@@ -91,10 +83,19 @@ class ImageRecovery {
       // Counted when the images were read for the first time.
       view.corners.clear();
     }
-    return view;
+    if (T_cam_target) {
+      const int num_predicted = countPredicted(camera_, *T_cam_target, start_.target_points);
+      result.searched = {camera_, *T_cam_target, static_cast<int>(view.corners.size()) >= num_predicted};
+    }
+    return result;
   }
 
  private:
+  bool needsSearch(std::int64_t stamp_ns, const geometry::Rigid3& T_cam_target) const {
+    const auto before = search_.history.find(stamp_ns);
+    return before == search_.history.end() || hasMoved(before->second, camera_, T_cam_target, start_.target_points);
+  }
+
   void rememberUsed(const CameraView& image) {
     for (const Corner& corner : image.corners) {
       if (corner.used) {
@@ -129,7 +130,7 @@ class ImageRecovery {
       return earlier.corners;
     }
     seen = joined(seen, search_.views.detectRectified(gray, *T_cam_target));
-    detection::BoardMap map = boardMap(camera_, *T_cam_target);
+    detection::BoardMap map = boardMap(camera_, *T_cam_target, start_.shape);
     std::vector<Corner> corners = earlier.corners;
     if (search_.recovery != nullptr) {
       corners = recoverWith(gray, start_.poses.solved(camera_index_, earlier.stamp_ns).has_value(), map);
@@ -146,7 +147,7 @@ class ImageRecovery {
     if (!is_solved && corners.size() >= kMinPoseCorners) {
       // The pose was a guess; what was found with it gives a better one, which finds more.
       if (const auto better = calibration::estimatePose(camera_, start_.target_points, corners)) {
-        map = boardMap(camera_, *better);
+        map = boardMap(camera_, *better, start_.shape);
         corners = search_.recovery->recover(gray, map);
       }
     }
@@ -169,15 +170,22 @@ CameraCorners recoverCorners(const CameraStream& stream, int camera_index, const
   const ImageRecovery images(camera_index, search, start, previous);
   CameraCorners corners = previous;
   corners.images.clear();
-  streamImages<CameraView>(
+  SearchHistory searched;  // joins the history afterwards: workers read that
+  streamImages<RecoveredImage>(
       stream, options.num_threads, listener, {Stage::kRecover, camera_index, 0, 0},
       [&images](const StampedImage& image) { return images.recover(image); },
-      [&corners](CameraView view) {
-        const bool is_new = corners.images.empty() || corners.images.back().stamp_ns < view.stamp_ns;
-        if (is_new && !view.corners.empty()) {
-          corners.images.push_back(std::move(view));
+      [&](RecoveredImage image) {
+        if (image.searched) {
+          searched[image.view.stamp_ns] = *image.searched;
+        }
+        const bool is_new = corners.images.empty() || corners.images.back().stamp_ns < image.view.stamp_ns;
+        if (is_new && !image.view.corners.empty()) {
+          corners.images.push_back(std::move(image.view));
         }
       });
+  for (auto& [stamp_ns, image] : searched) {
+    search.history[stamp_ns] = image;
+  }
   return corners;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "bent_board.h"
 #include "board_poses.h"
+#include "search_history.h"
 #include "tartan_calib/detection/corner_recovery.h"
 #include "tartan_calib/pipeline/calibrate.h"
 #include "view_detection.h"
@@ -12,13 +14,15 @@ struct RoundStart {
   const calibration::Solution& solution;
   const BoardPoses& poses;
   const std::vector<Eigen::Vector3d>& target_points;  ///< with the board's curvature
+  const BoardShape& shape;
 };
 
 /// Where a round looks for corners in the images of one camera.
 struct RoundSearch {
   const detection::CornerRecovery* recovery;  ///< at the predictions; null: not there
   const ViewDetection& views;
-  double half_window_m;  ///< on the board, for refining what the views show
+  double half_window_m;    ///< on the board, for refining what the views show
+  SearchHistory& history;  ///< images whose predictions have not moved since are left alone; extended
 };
 
 /// The corners of all images of one camera, looked for where the solution says that they are. `previous`: what the camera

@@ -152,6 +152,8 @@ TEST(Arguments, ThatAreWrongAreNamed) {
   EXPECT_TRUE(contains(usageError(commandWith({"--min-tags", "0"})), "--min-tags"));
   EXPECT_TRUE(contains(usageError(commandWith({"--min-border-distance", "-1"})), "--min-border-distance"));
   EXPECT_TRUE(contains(usageError(commandWith({"--linear-solver", "qr"})), "qr"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--corner-filter", "none"})), "'none'"));
+  EXPECT_TRUE(contains(usageError(commandWith({"--correction-threshold", "0"})), "--correction-threshold"));
   EXPECT_TRUE(contains(usageError(commandWith({"--init", "a.yaml", "--fix", "camera1"})), "camera1"));
   EXPECT_TRUE(contains(usageError(commandWith({"--fix", "cam1"})), "--init"));
 }

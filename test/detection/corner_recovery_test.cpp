@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/board_scene.h"
+#include "tartan_calib/error.h"
 
 namespace tartan_calib::detection {
 namespace {
@@ -258,6 +259,32 @@ TEST(CornerRecoveryTest, CheckerboardsAreFoundWhicheverWayRoundTheyArePrinted) {
     EXPECT_GE(result.found, 0.98 * result.expected) << "of " << result.expected << (inverted ? " inverted" : "");
     EXPECT_EQ(result.wrong, 0);
   }
+}
+
+TEST(CornerRecoveryTest, QuadrilateralsSayLessAndNothingWrong) {
+  const target::AprilGrid grid;
+  RecoveryOptions quads;
+  quads.filter = CornerFilter::kQuads;
+  for (const double polar_deg : {10.0, 50.0, 75.0}) {
+    BoardScene scene(fisheye());
+    const BoardPose pose{0.5, polar_deg * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree};
+    const auto truth = scene.add(grid, pose);
+    cv::circle(scene.grey(), cv::Point(static_cast<int>(truth[60].px.x()), static_cast<int>(truth[60].px.y())), 40, 150.0F,
+               cv::FILLED);
+    const cv::Mat image = scene.expose(0.7, 2.0);
+    const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, pose));
+    const Score by_quads = score(CornerRecovery(grid, quads).recover(image, map), truth);
+    const Score by_image = score(CornerRecovery(grid).recover(image, map), truth);
+    EXPECT_GT(by_quads.found, 20) << polar_deg;
+    EXPECT_LT(by_quads.found, by_image.found) << polar_deg;
+    EXPECT_EQ(by_quads.wrong, 0) << polar_deg;
+  }
+}
+
+TEST(CornerRecoveryTest, QuadrilateralsNeedTags) {
+  RecoveryOptions quads;
+  quads.filter = CornerFilter::kQuads;
+  EXPECT_THROW(CornerRecovery(target::Checkerboard{7, 10, 0.05, 0.05}, quads), InputError);
 }
 
 TEST(CornerRecoveryTest, AnImageWithoutABoardGivesNothing) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "tartan_calib/calibration/compare.h"
 #include "wide_recording.h"
@@ -100,6 +101,45 @@ TEST(RoundsTest, StopOnceNothingImproves) {
   EXPECT_LT(last.gained, 0.01 * last.corners);
   EXPECT_LT(last.model_change_px, 0.02);
   EXPECT_EQ(last.round, static_cast<int>(result.rounds.size()));
+}
+
+TEST(RoundsTest, LeaveImagesAloneWhosePredictionsHaveNotMoved) {
+  std::atomic<std::size_t> num_loads{0};
+  CameraStream stream = wideStream();
+  const auto open = stream.open;
+  stream.open = [&num_loads, open] {
+    return [&num_loads, next = open()]() -> std::optional<StampedImage> {
+      auto image = next();
+      if (image) {
+        image->load = [&num_loads, load = image->load] {
+          ++num_loads;
+          return load();
+        };
+      }
+      return image;
+    };
+  };
+  CalibrateOptions options;
+  options.models = {"ds-none"};
+  options.min_tags = kWideMinTags;
+  const CalibrationResult result = calibrate({stream}, target::AprilGrid(), options);
+  ASSERT_GE(result.rounds.size(), 2U);
+  // Detection and the first round look at every image, later rounds at next to none.
+  EXPECT_GE(num_loads, 2 * kNumWideImages);
+  EXPECT_LE(num_loads, 2 * kNumWideImages + 3);
+}
+
+TEST(RoundsTest, FilterByQuadrilateralsFindsFewerCornersAndNoneThatIsWrong) {
+  CalibrateOptions options;
+  options.models = {"ds-none"};
+  options.max_rounds = 1;
+  const CalibrationResult image = calibrate({wideStream()}, target::AprilGrid(), options);
+  options.recovery.filter = detection::CornerFilter::kQuads;
+  const CalibrationResult quads = calibrate({wideStream()}, target::AprilGrid(), options);
+  const CalibrationResult before = run(0);
+  EXPECT_GE(quads.cameras[0].statistics.num_corners, before.cameras[0].statistics.num_corners);
+  EXPECT_LT(quads.cameras[0].statistics.num_corners, image.cameras[0].statistics.num_corners);
+  EXPECT_LT(quads.cameras[0].statistics.rms_px, 0.1);
 }
 
 TEST(RoundsTest, TheNumberOfThreadsChangesNothing) {

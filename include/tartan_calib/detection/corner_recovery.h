@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "tartan_calib/detection/board_map.h"
@@ -13,9 +14,18 @@ namespace tartan_calib::detection {
 
 struct CornerCandidate;
 struct CornerSearch;
+struct CornerSeed;
+struct RefinedCorner;
 class TagPayload;
 
+/// What says that a predicted corner is in the image.
+enum class CornerFilter {
+  kImage,  ///< the image at the prediction: X-corner, payload, neighbours
+  kQuads,  ///< a quadrilateral whose four corners are close to those of one predicted tag; AprilGrids only
+};
+
 struct RecoveryOptions {
+  CornerFilter filter = CornerFilter::kImage;
   double search_radius_px = 4.0;  ///< how far a corner may be from its prediction
   double min_border_px = 2.0;     ///< corners closer to the image border are not looked for
   double min_neighbour_px = 4.0;  ///< nor those whose nearest corner on the board is closer
@@ -23,12 +33,14 @@ struct RecoveryOptions {
   double min_correlation = 0.8;   ///< of the grey values around a corner with the pattern expected there
   double min_contrast = 8.0;      ///< light minus dark around a corner [grey levels]
   double max_field_deviation_px = 1.0;  ///< of a corner's shift from its prediction against its neighbours' shifts
+  double max_quad_distance_px = 1.41;   ///< kQuads: from a quadrilateral's corner to the tag's; TartanCalib's default
 };
 
 /// Finds the corners of a board whose place in the image is roughly known. No straight edges and no decoded tag are needed:
 /// around each predicted corner the image must show an X-corner of the predicted orientation and polarity; shifts from the
 /// predictions must agree between neighbours; and the payload of the tag, sampled through the map, must agree with its id,
-/// or neighbours on tags that do must vouch for the corner. A covered corner is not reported.
+/// or neighbours on tags that do must vouch for the corner. A covered corner is not reported. That is CornerFilter::kImage;
+/// kQuads is the filter of Duisterhof et al. 2022, for comparison.
 class CornerRecovery {
  public:
   explicit CornerRecovery(const target::Target& target, const RecoveryOptions& options = {});
@@ -38,9 +50,11 @@ class CornerRecovery {
 
  private:
   std::vector<CornerCandidate> recoverCandidates(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
+  std::vector<CornerCandidate> recoverOnQuads(const cv::Mat& gray, const BoardMap& map) const;
   std::vector<CornerCandidate> predict(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
   void find(const cv::Mat& gray, const BoardMap& map, const Eigen::Vector2d& expected_shift_px, double radius_px,
             CornerCandidate& candidate) const;
+  std::optional<RefinedCorner> refineAt(const cv::Mat& gray, const BoardMap& map, const CornerSeed& seed) const;
   void findWithin(const cv::Mat& gray, const BoardMap& map, const CornerSearch& search, CornerCandidate& candidate) const;
   void findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<CornerCandidate>& candidates) const;
 

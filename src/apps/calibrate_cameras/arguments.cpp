@@ -41,6 +41,18 @@ calibration::LinearSolver linearSolver(const std::string& name) {
   return calibration::LinearSolver::kAuto;
 }
 
+void applyCornerFilter(const Flags& flags, detection::RecoveryOptions& recovery) {
+  const auto name = flags.get<std::string>("corner-filter", "image");
+  if (name != "image" && name != "quads") {
+    throw UsageError("--corner-filter is image or quads, not '" + name + "'");
+  }
+  recovery.filter = name == "quads" ? detection::CornerFilter::kQuads : detection::CornerFilter::kImage;
+  recovery.max_quad_distance_px = flags.get("correction-threshold", recovery.max_quad_distance_px);
+  if (!(recovery.max_quad_distance_px > 0.0)) {
+    throw UsageError("--correction-threshold must be a positive number of pixels");
+  }
+}
+
 /// Index of `camN`; empty for any other word.
 std::optional<int> cameraIndex(const std::string& word) {
   constexpr std::size_t kMaxDigits = 3;
@@ -107,6 +119,7 @@ pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
   }
   options.projections = projectionsFrom(flags);
   applyFilters(flags, options);
+  applyCornerFilter(flags, options.recovery);
   solve.linear_solver = linearSolver(flags.get<std::string>("linear-solver", "auto"));
   applyFix(flags.get<Words>("fix"), solve);
   return options;

@@ -33,6 +33,7 @@ po::options_description ownOptions() {
       "estimate-board-warp", "")("linear-solver", po::value<std::string>(), "")("threads", po::value<int>(), "")(
       "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "")("max-rounds", po::value<int>(), "")(
       "min-tags", po::value<int>(), "")("min-border-distance", po::value<double>(), "")(
+      "corner-filter", po::value<std::string>(), "")("correction-threshold", po::value<double>(), "")(
       "projections", po::value<Words>()->multitoken(), "")("fovs", columns(), "")("poses", columns(), "")("resolutions",
                                                                                                           columns(), "");
   return options;

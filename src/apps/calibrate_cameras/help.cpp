@@ -2,8 +2,9 @@
 
 namespace tartan_calib::apps {
 
-std::string helpText() {
-  return R"(Calibrates cameras, and where they sit on a rig, from a recording of a calibration board.
+namespace {
+
+constexpr const char* kHelp = R"(Calibrates cameras, and where they sit on a rig, from a recording of a calibration board.
 
   rosrun tartan_calib calibrate_cameras --bag rig.bag --target april_6x6.yaml \
       --topics /cam0/image_raw /cam1/image_raw --models ds-none ds-none
@@ -33,6 +34,9 @@ Corners
   --min-border-distance PX  tags closer to the edge of the image are left to the rounds (4)
   --max-rounds N            go through the images again with the calibrated model and look where it says corners are, at
                             most so often (5); 0: only the tags that are detected without a model, as Kalibr
+  --corner-filter F         what says that a predicted corner is there: image (X-corner, payload, neighbours; the default)
+                            or quads (a quadrilateral on the predicted tag, as TartanCalib: finds fewer)
+  --correction-threshold X  quads: largest distance of its corners from the tag's, in pixels (1.41)
   --projections P [P ...]   also detect in virtual views, remapped with the model: cube (five faces), homography (rectified
                             on the predicted board), pinhole (one view for each, described by a column of the next three)
   --fovs H .. --fovs V ..   degrees of each view (90 90)
@@ -61,6 +65,9 @@ Accepted for Kalibr's sake, without effect: a batch solver uses every view, in a
 Flags may be cut short while they stay unambiguous. Environment: KALIBR_MANUAL_FOCAL_LENGTH_INIT, a focal length in pixels
 above 10, helps the start where nothing else does. Exit code: 0 with a result, 1 without, 2 for a wrong command line.
 )";
-}
+
+}  // namespace
+
+std::string helpText() { return kHelp; }
 
 }  // namespace tartan_calib::apps
