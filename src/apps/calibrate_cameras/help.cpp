@@ -1,7 +1,6 @@
 #include "calibrate_cameras/arguments.h"
 
 namespace tartan_calib::apps {
-
 namespace {
 
 constexpr const char* kHelp = R"(Calibrates cameras, and where they sit on a rig, from a recording of a calibration board.
