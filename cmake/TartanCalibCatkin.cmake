@@ -39,7 +39,7 @@ set(EIGEN3_INCLUDE_DIRS ${EIGEN3_INCLUDE_DIR})
 
 # Static libraries in the order a linker wants them: a module before those it uses.
 set(TARTAN_CALIB_EXPORTED)
-foreach(module ros io simulation pipeline calibration detection solver observation target camera geometry)
+foreach(module ros report io simulation pipeline calibration detection solver observation target camera geometry)
   file(GLOB sources ${PROJECT_SOURCE_DIR}/src/${module}/*.cpp)
   if(sources)
     list(APPEND TARTAN_CALIB_EXPORTED tartan_calib_${module})
@@ -107,5 +107,18 @@ function(tartan_calib_install)
   install(DIRECTORY ${TARTAN_CALIB_SOURCE_DIR}/include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
   foreach(folder launch config)
     install(DIRECTORY ${TARTAN_CALIB_SOURCE_DIR}/${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
+  endforeach()
+endfunction()
+
+# tartan_calib_report_script(): what draws the report, in the devel space (copied whenever it changes) and in the install
+# space. Programs look for it at the same place beside them in both.
+function(tartan_calib_report_script)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/report/*)
+  foreach(file ${files})
+    if(NOT IS_DIRECTORY ${file})
+      get_filename_component(name ${file} NAME)
+      configure_file(${file} ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/report/${name} COPYONLY)
+      install(FILES ${file} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/report)
+    endif()
   endforeach()
 endfunction()

@@ -50,7 +50,7 @@ ensure_packages() {
 # What the core needs, what ROS adds, and what the tests add.
 core_packages=(cmake g++ make libapriltag-dev libboost-program-options-dev libeigen3-dev libopencv-dev libsuitesparse-dev
   libyaml-cpp-dev)
-ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-roslaunch
+ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-matplotlib python3-roslaunch
   ros-environment rosbash)
 test_packages=(libceres-dev libgtest-dev python3-yaml)
 # shellcheck disable=SC2034

@@ -67,7 +67,7 @@ def calibrate(output, source, target, models, topics, *flags):
         where = ["--corners", source]
     else:
         where = ["--bag", source]
-    arguments = [*where, "--target", target, "--models", *models, "--topics", *topics, "--dont-show-report", *flags]
+    arguments = [*where, "--target", target, "--models", *models, "--topics", *topics, "--no-report", *flags]
     _, seconds = run("calibrate_cameras", *arguments)
     chain = yaml.safe_load(pathlib.Path(f"{output}-camchain.yaml").read_text())
     record = yaml.safe_load(pathlib.Path(f"{output}-calibration.yaml").read_text())

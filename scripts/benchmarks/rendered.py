@@ -60,7 +60,7 @@ def solver(_):
                        cov_vv=0.01, used=1)
         write_corners(WORK / f"{name}.csv", comments, corners)
         for which in ["schur", "sparse"]:
-            text, _ = run("calibrate_cameras", "--corners", WORK / f"{name}.csv", "--target", target, "--models",
+            text, _ = run("calibrate_cameras", "--no-report", "--corners", WORK / f"{name}.csv", "--target", target, "--models",
                           *["ds-none"] * cameras, "--threads", 1, "--linear-solver", which, "--verbose")
             start = sum(float(value) for value in re.findall(r"([0-9.]+) s  start camera", text))
             rows.append([f"{cameras}, {which}", len(corners), f"{start:.2f}", re.search(r"([0-9.]+) s  solve", text).group(1)])

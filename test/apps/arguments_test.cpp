@@ -103,8 +103,16 @@ TEST(Arguments, SetEveryOption) {
 }
 
 TEST(Arguments, AcceptWhatHasNoEffectHere) {
-  EXPECT_NO_THROW(parsedWith({"--qr-tol", "0.02", "--mi-tol", "-1", "--no-shuffle", "--plot", "--plot-outliers",
-                              "--show-extraction", "--dont-show-report", "--no-report"}));
+  EXPECT_NO_THROW(
+      parsedWith({"--qr-tol", "0.02", "--mi-tol", "-1", "--no-shuffle", "--plot", "--plot-outliers", "--show-extraction"}));
+}
+
+TEST(Arguments, ChooseWhetherThereIsAReportAndWhetherItIsShown) {
+  EXPECT_TRUE(parsedWith({}).report);
+  EXPECT_TRUE(parsedWith({}).show_report);
+  EXPECT_FALSE(parsedWith({"--no-report"}).report);
+  EXPECT_FALSE(parsedWith({"--dont-show-report"}).show_report);
+  EXPECT_TRUE(parsedWith({"--dont-show-report"}).report);
 }
 
 TEST(Arguments, MayBeCutShort) {

@@ -62,6 +62,7 @@ class Recordings:
         return self.path / f"{name}-target.yaml"
 
 
-def calibrate(bag, target, models, topics=None, extra=()):
+def calibrate(bag, target, models, topics=None, extra=(), report=False):
+    extra = [*extra] if report else [*extra, "--no-report"]
     topics = topics or [f"/cam{index}/image_raw" for index in range(len(models))]
     return run("calibrate_cameras", "--bag", bag, "--target", target, "--topics", *topics, "--models", *models, *extra)

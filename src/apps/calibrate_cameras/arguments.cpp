@@ -164,6 +164,8 @@ Arguments parseArguments(const std::vector<std::string>& words) {
   arguments.calibrate = calibrateFrom(flags);
   arguments.export_poses = flags.has("export-poses");
   arguments.export_corners = flags.has("export-corners");
+  arguments.report = !flags.has("no-report");
+  arguments.show_report = !flags.has("dont-show-report");
   checkComplete(arguments, flags);
   return arguments;
 }

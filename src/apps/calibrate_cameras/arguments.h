@@ -25,6 +25,8 @@ struct Arguments {
   std::string output_prefix;  ///< of the result files' names; empty: as outputPrefix() says
   bool export_poses = false;
   bool export_corners = false;
+  bool report = true;
+  bool show_report = true;
 };
 
 /// Parses the words after the program's name as parseFlags does; `--rig F` stands for the flags in F. Throws UsageError that

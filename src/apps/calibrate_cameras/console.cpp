@@ -164,6 +164,25 @@ void Console::printFiles(const OutputFiles& files) {
   std::fflush(stdout);
 }
 
+void Console::printReport(const ReportFiles& report) {
+  if (!report.failure.empty()) {
+    printWarning("there is no report: " + report.failure);
+  } else {
+    std::printf("  Report written to %s\n  Report written to %s\n", report.pdf.c_str(), report.html.c_str());
+  }
+  if (!report.verdict) {
+    return;
+  }
+  std::printf("\nVerdict: %s\n", report::gradeName(report.verdict->grade).c_str());
+  for (const std::string& fact : report.verdict->facts) {
+    std::printf("  %s\n", fact.c_str());
+  }
+  for (const report::Reason& reason : report.verdict->reasons) {
+    std::printf("  %s: %s\n", report::gradeName(reason.grade).c_str(), reason.text.c_str());
+  }
+  std::fflush(stdout);
+}
+
 void Console::printTimes(const pipeline::CalibrationResult& result) {
   for (const pipeline::StageTime& time : result.times) {
     const std::string camera = time.camera_index < 0 ? "" : " cam" + std::to_string(time.camera_index);

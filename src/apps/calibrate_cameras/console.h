@@ -5,6 +5,7 @@
 #include "calibrate_cameras/inputs.h"
 #include "calibrate_cameras/outputs.h"
 #include "calibrate_cameras/progress_bar.h"
+#include "calibrate_cameras/report.h"
 #include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::apps {
@@ -19,6 +20,7 @@ class Console {
 
   void printResult(const pipeline::CalibrationResult& result);
   void printFiles(const OutputFiles& files);
+  void printReport(const ReportFiles& report);
   void printTimes(const pipeline::CalibrationResult& result);
 
  private:

@@ -8,7 +8,7 @@ constexpr const char* kHelp = R"(Calibrates cameras, and where they sit on a rig
   rosrun tartan_calib calibrate_cameras --bag rig.bag --target april_6x6.yaml \
       --topics /cam0/image_raw /cam1/image_raw --models ds-none ds-none
 
-writes rig-camchain.yaml, rig-results-cam.txt and rig-calibration.yaml beside the bag.
+writes rig-camchain.yaml, rig-results-cam.txt, rig-calibration.yaml and a report, rig-report-cam.pdf and .html, beside the bag.
 
 What to calibrate
   --bag B                   ROS 1 bag, or folder with cam0/<stamp in ns>.png (jpg, bmp, pgm)
@@ -55,11 +55,13 @@ Solver
 Output
   --export-poses            also write <bag>-poses-cam0.csv
   --export-corners          also write <bag>-corners.csv
+  --no-report               no report: saves its time, and the verdict that goes with it
+  --dont-show-report        do not open the report (done only at a terminal with a display)
   --verbose                 also print how long each step took
   -h, --help                this text
 
 Accepted for Kalibr's sake, without effect: a batch solver uses every view, in any order, and opens no windows
-  --qr-tol X  --mi-tol X  --no-shuffle  --plot  --plot-outliers  --show-extraction  --dont-show-report  --no-report
+  --qr-tol X  --mi-tol X  --no-shuffle  --plot  --plot-outliers  --show-extraction
 
 Flags may be cut short while they stay unambiguous. Environment: KALIBR_MANUAL_FOCAL_LENGTH_INIT, a focal length in pixels
 above 10, helps the start where nothing else does. Exit code: 0 with a result, 1 without, 2 for a wrong command line.

@@ -1,11 +1,32 @@
 #include "calibrate_cameras/session.h"
 
+#include <cstdio>
+
 #include "calibrate_cameras/console.h"
 #include "calibrate_cameras/outputs.h"
+#include "calibrate_cameras/report.h"
 #include "common/interrupt.h"
 #include "common/program.h"
 
 namespace tartan_calib::apps {
+namespace {
+
+void reportOn(const pipeline::CalibrationResult& result, const Inputs& inputs, const Arguments& arguments,
+              Console& console) {
+  std::printf("Generating result report...\n");
+  std::fflush(stdout);
+  const UninterruptedSection leaves_nothing_behind;
+  const ReportFiles files = writeReport(result, inputs, outputPrefix(arguments));
+  if (isInterruptWaiting()) {
+    return;
+  }
+  console.printReport(files);
+  if (arguments.show_report) {
+    showReport(files);
+  }
+}
+
+}  // namespace
 
 std::string commandText(const std::string& program, const std::vector<std::string>& words) {
   std::string text = program;
@@ -34,6 +55,9 @@ void runSession(const Arguments& arguments, const std::string& command, const Se
   }
   if (hooks.finished) {
     hooks.finished(inputs, result);
+  }
+  if (arguments.report) {
+    reportOn(result, inputs, arguments, console);
   }
 }
 

@@ -44,4 +44,6 @@ UninterruptedSection::~UninterruptedSection() {
   }
 }
 
+bool isInterruptWaiting() { return waiting_signal != 0; }
+
 }  // namespace tartan_calib::apps

@@ -15,4 +15,7 @@ class UninterruptedSection {
   UninterruptedSection& operator=(const UninterruptedSection&) = delete;
 };
 
+/// True once a signal waits for the end of the section: work that need not be finished may stop.
+bool isInterruptWaiting();
+
 }  // namespace tartan_calib::apps

@@ -1,0 +1,29 @@
+#!/usr/bin/python3
+"""Draws report.pdf and report.html into a folder with the data that calibrate_cameras left there.
+
+Usage: draw_report.py <folder>
+"""
+
+import multiprocessing
+import sys
+
+
+def main(folder):
+    try:
+        import html_report
+        import pdf_report
+        from report_data import Report
+    except ImportError as error:
+        sys.exit(f"Python lacks {error.name}: install python3-matplotlib")
+    report = Report(folder)
+    page = multiprocessing.Process(target=html_report.write, args=(report,))
+    page.start()
+    pdf_report.write(report)
+    page.join()
+    return page.exitcode
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__.strip())
+    sys.exit(main(sys.argv[1]))

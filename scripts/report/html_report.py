@@ -1,0 +1,89 @@
+"""report.html: the pages as pictures, a table of the views, and the frames with their corners, in one file."""
+
+import base64
+import html
+import io
+import json
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pdf_report
+
+PAGE_DPI = 90
+TEMPLATE = Path(__file__).parent / "report_template.html"
+
+
+def data_url(content, kind):
+    return f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
+
+
+def pages_html(report):
+    parts = []
+    for index, (title, figure) in enumerate(pdf_report.pages(report)):
+        if title != "Verdict":  # which the page itself shows
+            content = io.BytesIO()
+            figure.savefig(content, format="png", dpi=PAGE_DPI)
+            heading = html.escape(title)
+            parts.append(f'<figure id="page{index}"><img alt="{heading}" src="{data_url(content.getvalue(), "png")}"></figure>')
+        plt.close(figure)
+    return "\n".join(parts)
+
+
+def verdict_html(report):
+    verdict = report.verdict
+    lines = [f"<li>{html.escape(fact)}</li>" for fact in verdict["facts"]]
+    lines += [f'<li class="{reason["grade"]}">{reason["grade"]}: {html.escape(reason["text"])}</li>'
+              for reason in verdict["reasons"]]
+    if not verdict["reasons"]:
+        lines.append('<li class="good">Nothing speaks against this calibration.</li>')
+    lines += [f"<li>note: {html.escape(warning)}</li>" for warning in report.warnings]
+    return f'<p id="verdict" class="{verdict["grade"]}">Verdict: {verdict["grade"]}</p>\n<ul>{"".join(lines)}</ul>'
+
+
+def rounded(values, digits):
+    """Numbers as JSON with few digits; what is not finite becomes null."""
+    return [None if not np.isfinite(value) else round(float(value), digits) for value in values]
+
+
+def corners_of(table, view):
+    """u, v and residual of one view's corners, one number after the other."""
+    chosen = table.where(table.view == view)
+    residuals = (chosen.du_px, chosen.dv_px) if hasattr(chosen, "du_px") else ()
+    return [rounded(column, 1 if index < 2 else 3) for index, column in enumerate((chosen.u_px, chosen.v_px, *residuals))]
+
+
+def view_row(report, camera, view):
+    """What the table shows of one image."""
+    used = camera.used.where(camera.used.view == view)
+    T_cam_target = np.linalg.inv(camera.T_rig_cam) @ report.T_rig_target[view]
+    centre = T_cam_target[:3, :3] @ report.board_m.mean(axis=0) + T_cam_target[:3, 3]
+    tilt = np.degrees(np.arccos(np.clip(abs(T_cam_target[:3, 2] @ centre) / np.linalg.norm(centre), 0.0, 1.0)))
+    rms = np.sqrt(np.mean(used.du_px ** 2 + used.dv_px ** 2)) if used.size else np.nan
+    farthest = used.polar_deg.max(initial=0.0)
+    return rounded([report.times_s[view]], 2) + [used.size, int(np.count_nonzero(camera.rejected.view == view)),
+                                                 int(np.count_nonzero(camera.missed.view == view))] + \
+        rounded([rms, farthest, np.linalg.norm(centre), tilt], 3)
+
+
+def camera_data(report, camera):
+    views = np.unique(np.append(camera.found.view, camera.missed.view)).astype(int)
+    pictures = {frame["view"]: frame for frame in camera.frames}
+    frames = {}
+    for view in views.tolist():
+        frame = {"row": view_row(report, camera, view), "used": corners_of(camera.used, view),
+                 "rejected": corners_of(camera.rejected, view), "missed": corners_of(camera.missed, view)}
+        if view in pictures:
+            frame["picture"] = data_url(report.picture(pictures[view]["file"]).read_bytes(), "jpeg")
+        frames[view] = frame
+    return {"name": camera.name, "width": camera.width, "height": camera.height, "frames": frames}
+
+
+def write(report):
+    data = json.dumps([camera_data(report, camera) for camera in report.cameras], separators=(",", ":"))
+    page = TEMPLATE.read_text()
+    for key, value in (("TITLE", html.escape(f"Calibration of {report.name}")), ("VERDICT", verdict_html(report)),
+                       ("RESULTS", html.escape(report.results_text)), ("PAGES", pages_html(report)),
+                       ("DATA", data.replace("</", "<\\/"))):
+        page = page.replace(f"<!--{key}-->", value)
+    (report.folder / "report.html").write_text(page)

@@ -1,0 +1,231 @@
+"""Pages that tell whether to trust the result: coverage, residuals, uncertainty. Cameras share their scales."""
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from style import AMOUNTS, BLUE, GREY, ORANGE, RED, CYCLE, colour_bar, image_axes, legend_above, magnification, page, panels
+
+BAND_DEG = 5.0
+MAP_LEVELS_PX = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.3, 1.0, 3.0, 10.0)
+FAIR_PX = 0.1  # about what detection of one corner is good for: a projection better than that is not the weakest part
+MAX_ARROWS = 2500
+MIN_IN_CELL = 10
+
+
+def shared_max(report, values_of):
+    """Largest value over all cameras, so that their axes agree."""
+    values = [np.nanmax(values_of(camera), initial=0.0) for camera in report.cameras]
+    return max(values) or 1.0
+
+
+def coverage_page(report, camera):
+    title = f"{camera.name}: coverage"
+    figure = page(title, "Missed: the solution expects the corner in the image, but nothing was found there: hidden, blurred, too "
+                         "small, or outside of the lens's image circle.")
+    left, right = panels(figure)[0]
+    image_axes(left, camera, f"{camera.found.size} corners found, {camera.missed.size} missed")
+    cells = left.hexbin(camera.found.u_px, camera.found.v_px, gridsize=40, cmap=AMOUNTS, mincnt=1,
+                        extent=(0, camera.width, 0, camera.height))
+    left.plot(camera.missed.u_px, camera.missed.v_px, ".", color=RED, markersize=2, label="missed", rasterized=True)
+    draw_ring(left, camera)
+    legend_above(left)
+    colour_bar(figure, cells, left, "corners found in a cell")
+    longest = shared_max(report, lambda other: np.append(other.found.polar_deg, other.missed.polar_deg))
+    bands = np.arange(0.0, longest + BAND_DEG, BAND_DEG)
+    found, _ = np.histogram(camera.found.polar_deg[np.isfinite(camera.found.polar_deg)], bands)
+    missed, _ = np.histogram(camera.missed.polar_deg, bands)
+    right.bar(bands[:-1], found, BAND_DEG, align="edge", color=BLUE, edgecolor="white", label="found")
+    right.bar(bands[:-1], missed, BAND_DEG, bottom=found, align="edge", color=ORANGE, edgecolor="white", hatch="//",
+              label="missed")
+    right.set_xlim(0, bands[-1])
+    right.set_xlabel("angle from the optical axis (deg)")
+    right.set_ylabel("corners")
+    right.legend()
+    yield title, figure
+
+
+def draw_ring(axes, camera):
+    """How far from the axis corners go, as a line in the image."""
+    polar = np.ma.masked_invalid(camera.grid("polar_deg"))
+    if polar.count() and polar.min() < camera.max_polar_deg < polar.max():
+        axes.contour(camera.grid("u_px"), camera.grid("v_px"), polar, [camera.max_polar_deg], colors="black",
+                     linestyles="dashed", linewidths=1)
+        axes.plot([], [], "--", color="black", linewidth=1, label=f"farthest corner: {camera.max_polar_deg:.0f} deg")
+
+
+def vectors_page(report, camera):
+    title = f"{camera.name}: residual vectors"
+    figure = page(title, "Measured minus predicted, magnified. Left single corners: without direction or pattern where all is well. "
+                         "Right means over cells: what is left there the lens model or the board cannot follow.")
+    left, right = panels(figure)[0]
+    used = camera.used
+    step = max(1, used.size // MAX_ARROWS)
+    chosen = slice(None, None, step)
+    for axes, arrows, what in ((left, (used.u_px[chosen], used.v_px[chosen], used.du_px[chosen], used.dv_px[chosen]), "corners"),
+                               (right, cell_means(camera), "means of cells")):
+        u, v, du, dv = arrows
+        factor = magnification(np.hypot(du, dv), 0.04 * camera.width)
+        image_axes(axes, camera, f"{what}, {factor:g} times")
+        axes.quiver(u, v, factor * du, factor * dv, color=BLUE, angles="xy", scale_units="xy", scale=1, width=0.002,
+                    rasterized=True)
+    yield title, figure
+
+
+def cell_means(camera, columns=16):
+    """Centre of each cell of the image with enough corners, and their mean residual."""
+    size = camera.width / columns
+    column, row = (np.floor((coordinate + 0.5) / size).astype(int) for coordinate in (camera.used.u_px, camera.used.v_px))
+    cells, index, counts = np.unique(row * columns + column, return_inverse=True, return_counts=True)
+    means = [np.bincount(index, values) / counts for values in (camera.used.du_px, camera.used.dv_px)]
+    enough = counts >= MIN_IN_CELL
+    u, v = ((cells % columns) + 0.5) * size, ((cells // columns) + 0.5) * size
+    return u[enough], v[enough], means[0][enough], means[1][enough]
+
+
+def histogram_page(report, camera):
+    title = f"{camera.name}: residual histogram"
+    figure = page(title, "Both axes of all used corners against the normal distribution of the same robust width: heavier tails are "
+                         "blurred or wrong corners.")
+    left, right = panels(figure)[0]
+    limit = 1.05 * max(shared_max(report, lambda other: np.abs(np.append(other.used.du_px, other.used.dv_px))), 1e-6)
+    residuals = np.concatenate([camera.used.du_px, camera.used.dv_px])
+    width = max(1.4826 * float(np.median(np.abs(residuals))), 1e-9)
+    for axes, reach in ((left, 5.0 * width), (right, limit)):
+        edges = np.linspace(-reach, reach, 81)
+        counts, _, _ = axes.hist([camera.used.du_px, camera.used.dv_px], bins=edges, stacked=True, color=[BLUE, ORANGE],
+                                 label=["x", "y"])
+        middle = np.linspace(-reach, reach, 400)
+        expected = residuals.size * (edges[1] - edges[0]) * np.exp(-0.5 * (middle / width) ** 2) / (width * np.sqrt(2 * np.pi))
+        axes.plot(middle, expected, color="black", linewidth=1.2, label=f"normal, stdev {width:.3f} px")
+        axes.set_xlim(-reach, reach)
+        axes.set_xlabel("residual (px)")
+        axes.set_ylabel("corners")
+    left.set_title("five stdevs")
+    left.legend()
+    right.set_title("all, logarithmic: the tails")
+    right.set_yscale("log")
+    right.set_ylim(0.7, 2.0 * max(counts[-1].max(), 1.0))
+    yield title, figure
+
+
+def rms_page(report, camera):
+    title = f"{camera.name}: rms by polar angle and by view"
+    figure = page(title, "Residuals that grow with the angle: a model too simple, or blur at the edge. Single views that stand out: "
+                         "motion blur, or a board that was bent or hidden.")
+    left, right = panels(figure)[0]
+    bands = [band for band in camera.statistics["bands"] if band["corners"]]
+    starts = [band["from_deg"] for band in bands]
+    left.bar(starts, [band["rms_px"] for band in bands], 10.0, align="edge", color=BLUE, edgecolor="white", label="rms")
+    biases = camera.radial_biases
+    middles = [0.5 * (bias["from_deg"] + bias["to_deg"]) for bias in biases]
+    left.errorbar(middles, [bias["mean_px"] for bias in biases], [bias["stdev_px"] for bias in biases], color=RED, marker="o",
+                  markersize=4, capsize=2, linewidth=1, label="mean outwards, with its stdev")
+    left.axhline(0.0, color=GREY, linewidth=0.8)
+    left.set_xlim(0, max(other.max_polar_deg for other in report.cameras) + 5.0)
+    top = max(band["rms_px"] for other in report.cameras for band in other.statistics["bands"])
+    left.set_ylim(min(0.0, *(bias["mean_px"] - bias["stdev_px"] for bias in biases), 0.0) * 1.1, 1.2 * top)
+    left.set_xlabel("angle from the optical axis (deg)")
+    left.set_ylabel("residual (px)")
+    left.legend()
+    views, rms = rms_by_view(camera)
+    right.vlines(report.times_s[views], 0, rms, color=BLUE, linewidth=0.8)
+    right.plot(report.times_s[views], rms, ".", color=BLUE)
+    right.set_ylim(0, 1.05 * max(rms_by_view(other)[1].max(initial=1e-9) for other in report.cameras))
+    right.set_xlabel("time since the first view (s)")
+    right.set_ylabel("rms of the view (px)")
+    yield title, figure
+
+
+def rms_by_view(camera):
+    """Views with used corners, and the rms of their residuals."""
+    views = camera.used.view.astype(int)
+    squares = camera.used.du_px ** 2 + camera.used.dv_px ** 2
+    counts = np.bincount(views)
+    present = np.flatnonzero(counts)
+    return present, np.sqrt(np.bincount(views, squares)[present] / counts[present])
+
+
+def curves_page(report):
+    title = "Distortion curves: angle to radius"
+    figure = page(title, "Mean over all directions. Thick as far as there are corners, thin where the model is extrapolated; the "
+                         "mark is the farthest corner.")
+    left, right = panels(figure)[0]
+    for index, camera in enumerate(report.cameras):
+        angle, radius = camera.curve.angle_deg, camera.curve.radius_px
+        scale = np.gradient(radius, np.radians(angle)) if len(angle) > 2 else np.zeros_like(radius)
+        colour = CYCLE[index % len(CYCLE)]
+        known = angle <= camera.max_polar_deg
+        for axes, values in ((left, radius), (right, scale)):
+            axes.plot(angle, values, color=colour, linewidth=0.8)
+            axes.plot(angle[known], values[known], color=colour, linewidth=2.2, label=f"{camera.name}, {camera.model}")
+            axes.plot(camera.max_polar_deg, np.interp(camera.max_polar_deg, angle, values), "|", color=colour, markersize=22,
+                      markeredgewidth=2)
+    angle = np.linspace(0, 89, 300)
+    scale = report.cameras[0].curve.radius_px[1] / np.radians(report.cameras[0].curve.angle_deg[1])
+    top = 1.05 * shared_max(report, lambda camera: np.interp(camera.reach_deg, camera.curve.angle_deg, camera.curve.radius_px))
+    left.plot(angle, scale * np.tan(np.radians(angle)), ":", color=GREY, label="without distortion (tan), as cam0")
+    left.plot([0, 180], [0, scale * np.pi], "--", color=GREY, linewidth=0.8, label="equidistant, as cam0")
+    reach = shared_max(report, lambda camera: camera.reach_deg + 5.0)
+    for axes, label in ((left, "radius in the image (px)"), (right, "image scale along the radius (px/rad)")):
+        axes.set_xlim(0, reach)
+        axes.set_xlabel("angle from the optical axis (deg)")
+        axes.set_ylabel(label)
+    left.set_ylim(0, top)
+    right.set_ylim(0, None)
+    left.legend(loc="lower right")
+    yield title, figure
+
+
+def map_limits(report):
+    """Whole decades around what the maps of all cameras show."""
+    values = np.concatenate([column[camera.map.seen > 0] for camera in report.cameras
+                             for column in (camera.map.stdev_px, camera.map.difference_px)])
+    values = values[np.isfinite(values) & (values > 0)]
+    if not values.size:
+        return 1e-3, 1.0
+    low, high = np.floor(np.log10(np.quantile(values, 0.02))), np.ceil(np.log10(np.quantile(values, 0.995)))
+    return 10.0 ** low, 10.0 ** max(high, low + 1.0)
+
+
+def draw_map(axes, camera, column, title, norm):
+    """A map of pixels over the image in colour, with contours and a thick line at 0.1 px."""
+    image_axes(axes, camera, title)
+    u, v = camera.grid("u_px"), camera.grid("v_px")
+    values = np.ma.masked_invalid(camera.grid(column))
+    shown = np.ma.masked_where(values.mask | (camera.grid("seen") == 0), values)
+    mesh = axes.pcolormesh(u, v, shown, norm=norm, cmap=AMOUNTS, shading="nearest", rasterized=True)
+    for levels, colour, width in ((MAP_LEVELS_PX, "white", 0.7), ((FAIR_PX,), RED, 2.0)):
+        crossed = [level for level in levels if shown.count() and shown.min() < level < shown.max()]
+        if crossed:
+            axes.clabel(axes.contour(u, v, shown, crossed, colors=colour, linewidths=width), fmt="%g px", fontsize=7)
+    draw_ring(axes, camera)
+    axes.grid(False)
+    return mesh
+
+
+def maps_page(report, camera):
+    title = f"{camera.name}: expected projection uncertainty, and odd against even views"
+    figure = page(title, "Left: standard deviation in the worst direction that the corners' noise leaves in the projection. Right: how far "
+                         "calibrations of the odd and of the even views are apart. Much more than noise lets expect is blur, rolling shutter, "
+                         "or a model too simple. Red 0.1 px, dashed the farthest corner, white: no light or no model.")
+    left, right = panels(figure, bottom=0.17)[0]
+    norm = LogNorm(*map_limits(report), clip=True)
+    mesh = draw_map(left, camera, "stdev_px", f"uncertainty, median {camera.median_stdev_px:.2g} px", norm)
+    if camera.median_difference_px is None:
+        right.axis("off")
+        right.text(0.5, 0.5, "not measured: each half of the views\nmust determine a calibration", ha="center", va="center")
+    else:
+        draw_map(right, camera, "difference_px", f"odd against even, median {camera.median_difference_px:.2g} px, by noise "
+                 f"{camera.median_expected_difference_px:.2g} px", norm)
+    colour_bar(figure, mesh, [left, right], "pixels", extend="both")
+    yield title, figure
+
+
+def pages(report):
+    for camera in report.cameras:
+        yield from coverage_page(report, camera)
+        yield from vectors_page(report, camera)
+        yield from histogram_page(report, camera)
+        yield from rms_page(report, camera)
+    yield from curves_page(report)
+    for camera in report.cameras:
+        yield from maps_page(report, camera)

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calibrate_cameras/inputs.h"
+#include "tartan_calib/report/verdict.h"
+
+namespace tartan_calib::apps {
+
+/// The report of one run. The files are empty, and `failure` says why, where it could not be drawn.
+struct ReportFiles {
+  std::optional<report::Verdict> verdict;
+  std::string pdf;
+  std::string html;
+  std::string failure;
+};
+
+/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Once isInterruptWaiting() it stops, and nothing of the
+/// report is left.
+ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix);
+
+/// Opens the HTML page with xdg-open where standard output is a terminal and there is a display.
+void showReport(const ReportFiles& files);
+
+}  // namespace tartan_calib::apps

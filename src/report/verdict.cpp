@@ -1,0 +1,271 @@
+#include "tartan_calib/report/verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+
+namespace tartan_calib::report {
+namespace {
+
+constexpr double kDegreesPerRadian = 180.0 / M_PI;
+constexpr double kNsPerMs = 1e6;
+
+/// From which value on a measure is a reason: not quite good, or to be repeated.
+struct Limits {
+  double usable = 0.0;
+  double repeat = 0.0;
+};
+
+constexpr Limits kExtrapolated_ratio = {0.05, 0.4};  ///< of the image
+constexpr Limits kFocalStdev_ratio = {0.003, 0.03};
+constexpr Limits kStdev_px = {0.3, 2.0};  ///< median over the image of the projection's uncertainty
+constexpr Limits kRms_px = {0.6, 1.5};    ///< real lenses and boards reach 0.1 to 0.4
+constexpr Limits kRejected_ratio = {0.05, 0.4};
+constexpr Limits kBias_px = {0.03, 1.0};
+constexpr Limits kDifference_px = {0.1, 1.0};
+constexpr Limits kTimingMotion_px = {0.1, 1.0};
+constexpr int kFewViews = 10;
+constexpr int kTooFewViews = 4;
+constexpr int kFewSharedViews = 5;
+
+/// Two calibrations differ by about the stdev that their uncertainties leave. Beyond this many times that, something else
+/// than noise is at work.
+constexpr double kMaxDifference_ratio = 4.0;
+constexpr double kSignificance = 6.0;  ///< in stdevs
+constexpr double kMinBiasOfRms = 0.3;  ///< a pattern smaller than this share of the residuals hardly moves a model
+constexpr double kMinDelay_ms = 0.2;
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+std::string format(const char* pattern, ...) {
+  std::array<char, 512> text{};
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text.data(), text.size(), pattern, arguments);
+  va_end(arguments);
+  return text.data();
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    text += (text.empty() ? "" : ", ") + part;
+  }
+  return text;
+}
+
+/// Models to try for a lens that the given one cannot follow.
+std::string richerModels(const std::string& model) {
+  if (model == "pinhole-none") {
+    return "try pinhole-radtan";
+  }
+  if (model == "pinhole-radtan" || model == "pinhole-fov") {
+    return "try pinhole-equi or ds-none";
+  }
+  if (model == "pinhole-equi") {
+    return "try omni-radtan, and look for blur at the edge";
+  }
+  if (model == "omni-radtan") {
+    return "try pinhole-equi, and look for blur at the edge";
+  }
+  return "try pinhole-equi or omni-radtan";
+}
+
+/// Collects the reasons that one camera gives.
+class CameraJudge {
+ public:
+  CameraJudge(const pipeline::CalibrationResult& result, const Analysis& analysis, std::size_t index,
+              std::vector<Reason>& reasons)
+      : result_(result),
+        camera_(result.solution.rig.cameras[index].camera),
+        statistics_(result.cameras[index].statistics),
+        counts_(result.solution.counts[index]),
+        analysis_(analysis.cameras[index]),
+        name_("cam" + std::to_string(index)),
+        reasons_(reasons) {}
+
+  void judge() {
+    checkViews();
+    checkReach();
+    checkRegions();
+    checkUncertainty();
+    checkResiduals();
+    checkPattern();
+    checkHalves();
+  }
+
+  std::string fact() const {
+    return name_ + format(": corners to %.0f degrees from the axis, rms %.3f px, projection certain to %.3f px (median)",
+                          statistics_.max_polar_angle_rad * kDegreesPerRadian, statistics_.rms_px,
+                          analysis_.median_stdev_px);
+  }
+
+ private:
+  void add(const Limits& limits, double value, const std::string& text) {
+    if (value > limits.usable) {
+      reasons_.push_back({value > limits.repeat ? Grade::kRepeat : Grade::kUsable, name_ + ": " + text});
+    }
+  }
+
+  void checkViews() {
+    if (statistics_.num_views < kFewViews) {
+      reasons_.push_back({statistics_.num_views < kTooFewViews ? Grade::kRepeat : Grade::kUsable,
+                          name_ + format(": only %d views: record 30 or more", statistics_.num_views)});
+    }
+  }
+
+  void checkReach() {
+    add(kExtrapolated_ratio, analysis_.extrapolated_ratio,
+        format("no corner beyond %.0f degrees from the axis, where %.0f %% of the image lies (to %.0f degrees): the edge is "
+               "extrapolated; hold the board there",
+               statistics_.max_polar_angle_rad * kDegreesPerRadian, 100.0 * analysis_.extrapolated_ratio,
+               analysis_.reach_rad * kDegreesPerRadian));
+  }
+
+  void checkRegions() {
+    if (!analysis_.empty_regions.empty()) {
+      reasons_.push_back({Grade::kUsable, name_ + ": no corner in these parts of the image: " +
+                                              joined(analysis_.empty_regions) + "; hold the board there"});
+    }
+  }
+
+  void checkUncertainty() {
+    add(kFocalStdev_ratio, analysis_.focal_stdev_ratio,
+        format("views too similar: focal length uncertain to %.1f %%; tilt the board to 45 degrees, hold it near and far",
+               100.0 * analysis_.focal_stdev_ratio));
+    add(kStdev_px, analysis_.median_stdev_px,
+        format(
+            "too little data: the projection is uncertain to %.1f px (median over the image); record more views, close up",
+            analysis_.median_stdev_px));
+  }
+
+  void checkResiduals() {
+    add(kRms_px, statistics_.rms_px,
+        format("large residuals (rms %.2f px): look for motion blur, wrong sizes in the target file, a bent board, or a "
+               "rolling shutter",
+               statistics_.rms_px));
+    const int rejected = counts_.outliers + counts_.unprojectable + counts_.unsupported;
+    const double ratio = static_cast<double>(rejected) / std::max(1, rejected + counts_.used);
+    add(kRejected_ratio, ratio,
+        format(
+            "%.0f %% of the corners were rejected (%d outliers, %d that the model cannot project): look at the worst frames",
+            100.0 * ratio, counts_.outliers, counts_.unprojectable));
+  }
+
+  /// Residuals that point the same way at the same angle are no noise: the model cannot follow the lens.
+  void checkPattern() {
+    const auto size = [](const RadialBias& bias) { return std::abs(bias.mean_px); };
+    const RadialBias* worst = nullptr;
+    for (const RadialBias& bias : analysis_.radial_biases) {
+      const bool is_significant = bias.num_images >= kTooFewViews && size(bias) > kSignificance * bias.stdev_px &&
+                                  size(bias) > kMinBiasOfRms * statistics_.rms_px;
+      if (is_significant && (worst == nullptr || size(bias) > size(*worst))) {
+        worst = &bias;
+      }
+    }
+    if (worst == nullptr) {
+      return;
+    }
+    const std::string model = camera::modelName(camera_.model);
+    add(kBias_px, size(*worst),
+        format(
+            "residuals follow the angle (%.2f px %s on average at %.0f to %.0f degrees): %s is too simple for this lens, %s",
+            size(*worst), worst->mean_px > 0.0 ? "outwards" : "inwards", worst->from_rad * kDegreesPerRadian,
+            worst->to_rad * kDegreesPerRadian, model.c_str(), richerModels(model).c_str()));
+  }
+
+  void checkHalves() {
+    if (!analysis_.median_difference_px) {
+      return;
+    }
+    const double expected_px = analysis_.median_expected_difference_px;
+    if (*analysis_.median_difference_px > kMaxDifference_ratio * expected_px) {
+      add(kDifference_px, *analysis_.median_difference_px,
+          format("even and odd views give calibrations %.2f px apart, %.0f times what noise explains: look for motion blur, "
+                 "a rolling shutter, a bent board, or a camera that changed",
+                 *analysis_.median_difference_px, *analysis_.median_difference_px / expected_px));
+    }
+  }
+
+  const pipeline::CalibrationResult& result_;
+  const camera::Camera& camera_;
+  const calibration::CameraStatistics& statistics_;
+  const calibration::CornerCounts& counts_;
+  const CameraAnalysis& analysis_;
+  const std::string name_;
+  std::vector<Reason>& reasons_;
+};
+
+void judgeTiming(const CameraTiming& timing, std::vector<Reason>& reasons) {
+  const double delay_ms = timing.delay_ns / kNsPerMs;
+  const double stamps_ms = timing.median_stamp_ns / kNsPerMs;
+  const double motion_px = std::abs(delay_ms) * timing.speed_px_per_ms;
+  const bool is_significant = std::abs(timing.delay_ns) > kSignificance * timing.delay_stdev_ns &&
+                              std::abs(delay_ms) > kMinDelay_ms && timing.num_views >= kFewSharedViews;
+  if (!is_significant || motion_px < kTimingMotion_px.usable) {
+    return;
+  }
+  reasons.push_back(
+      {motion_px > kTimingMotion_px.repeat ? Grade::kRepeat : Grade::kUsable,
+       format("cam%d: stereo pairs %.1f ms apart (their stamps: %.1f ms), in which the board moves by %.1f px: check "
+              "sync, or hold the board still",
+              timing.camera_index, std::abs(delay_ms), stamps_ms, motion_px)});
+}
+
+void judgeRig(const pipeline::CalibrationResult& result, std::vector<Reason>& reasons) {
+  const calibration::Solution& solution = result.solution;
+  if (solution.status != calibration::SolveStatus::kConverged) {
+    reasons.push_back({Grade::kRepeat, format("the solver did not converge within %d iterations", solution.iterations)});
+  }
+  if (!solution.undetermined.empty()) {
+    reasons.push_back({Grade::kRepeat, "the views do not determine " + joined(solution.undetermined) +
+                                           ": record the board at more angles and distances"});
+  }
+  for (Eigen::Index i = 1; i < result.graph.shared_views.rows(); ++i) {
+    const int shared = result.graph.shared_views.row(i).head(i).maxCoeff();
+    if (shared < kFewSharedViews) {
+      reasons.push_back(
+          {Grade::kUsable, format("cam%td shares only %d views with any camera before it: its place on the rig "
+                                  "stands on little; hold the board where both see it",
+                                  i, shared)});
+    }
+  }
+}
+
+}  // namespace
+
+std::string gradeName(Grade grade) {
+  switch (grade) {
+    case Grade::kGood:
+      return "good";
+    case Grade::kUsable:
+      return "usable";
+    case Grade::kRepeat:
+      return "repeat";
+  }
+  return "";
+}
+
+Verdict judge(const pipeline::CalibrationResult& result, const Analysis& analysis) {
+  Verdict verdict;
+  judgeRig(result, verdict.reasons);
+  for (std::size_t i = 0; i < analysis.cameras.size(); ++i) {
+    CameraJudge judge(result, analysis, i, verdict.reasons);
+    judge.judge();
+    verdict.facts.push_back(judge.fact());
+  }
+  for (const CameraTiming& timing : analysis.timings) {
+    judgeTiming(timing, verdict.reasons);
+  }
+  std::stable_sort(verdict.reasons.begin(), verdict.reasons.end(),
+                   [](const Reason& a, const Reason& b) { return a.grade > b.grade; });
+  if (!verdict.reasons.empty()) {
+    verdict.grade = verdict.reasons.front().grade;
+  }
+  return verdict;
+}
+
+}  // namespace tartan_calib::report

@@ -1,0 +1,66 @@
+#include "tartan_calib/report/draw.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+#include "support/temporary_folder.h"
+#include "tartan_calib/error.h"
+
+namespace tartan_calib::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder with a script that stands for the one that draws.
+class DrawTest : public testing::Test {
+ protected:
+  void draw(const std::string& script, const std::function<bool()>& is_cancelled = {}) {
+    std::ofstream(folder_.file("script.py")) << script;
+    drawReport(folder_.file("script.py"), folder_.path().string(), pdf_, html_, is_cancelled);
+  }
+
+  static std::string contents(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  test_support::TemporaryFolder folder_;
+  const std::string pdf_ = folder_.file("x-report-cam.pdf");
+  const std::string html_ = folder_.file("x-report-cam.html");
+};
+
+TEST_F(DrawTest, MovesWhatTheScriptDrew) {
+  draw("import sys\nfor name in ('pdf', 'html'): open(sys.argv[1] + '/report.' + name, 'w').write(name)\n");
+  EXPECT_EQ(contents(pdf_), "pdf");
+  EXPECT_EQ(contents(html_), "html");
+}
+
+TEST_F(DrawTest, TellsTheLastLineOfAScriptThatFails) {
+  try {
+    draw("import sys\nprint('first')\nsys.exit('Python lacks matplotlib: install python3-matplotlib')\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "Python lacks matplotlib: install python3-matplotlib");
+  }
+  EXPECT_FALSE(fs::exists(pdf_));
+  EXPECT_FALSE(fs::exists(html_));
+}
+
+TEST_F(DrawTest, KeepsAnOlderReportWhereTheScriptFails) {
+  std::ofstream(pdf_) << "old";
+  EXPECT_THROW(draw("raise SystemExit(1)\n"), InputError);
+  EXPECT_EQ(contents(pdf_), "old");
+}
+
+TEST_F(DrawTest, EndsTheScriptAndItsChildrenWhenCancelled) {
+  const auto begin = std::chrono::steady_clock::now();
+  draw("import subprocess, sys, time\nsubprocess.Popen(['sleep', '60'])\ntime.sleep(60)\n", [] { return true; });
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_FALSE(fs::exists(pdf_));
+}
+
+}  // namespace
+}  // namespace tartan_calib::report
