@@ -21,7 +21,7 @@ def data_url(content, kind):
 def pages_html(report):
     parts = []
     for index, (title, figure) in enumerate(pdf_report.pages(report)):
-        if title != "Verdict":  # which the page itself shows
+        if title not in ("Verdict", "Calibration results"):  # which the page shows as text
             content = io.BytesIO()
             figure.savefig(content, format="png", dpi=PAGE_DPI)
             heading = html.escape(title)

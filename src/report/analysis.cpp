@@ -20,7 +20,7 @@ constexpr double kSeenShare = 0.98;          ///< of the seen map that counts fo
 
 /// Brightness of a frame's pixels below which they show nothing: a share of what bright ones have, but above the noise.
 constexpr double kDark_ratio = 0.1;
-constexpr double kMinDark_grey = 16.0;
+constexpr double kMinDarkGrey = 16.0;
 constexpr double kBrightShare = 0.9;
 
 /// Lenses that reach no farther than this at the nearest edge of the image light all of it.
@@ -43,7 +43,7 @@ class SeenPixels {
     if (pictures != nullptr && !pictures->brightest.empty()) {
       brightest_ = pictures->brightest;
       const std::vector<double> values(brightest_.begin<unsigned char>(), brightest_.end<unsigned char>());
-      dark_grey_ = std::max(kMinDark_grey, kDark_ratio * quantile(values, kBrightShare));
+      dark_grey_ = std::max(kMinDarkGrey, kDark_ratio * quantile(values, kBrightShare));
     }
     const double right_px = camera.width - 1.0;
     const double bottom_px = camera.height - 1.0;

@@ -114,9 +114,9 @@ class DelayFit {
 
   /// False where the board does not move, or where other unknowns can take its motion up.
   bool isDetermined() const { return information() > kMinInformation * squared_velocity_ && squared_velocity_ > 0.0; }
-  double delay_ms() const { return product_ / information(); }
-  double delayStdev_ms() const { return std::sqrt(squares_px2_ / std::max(1, num_components_) / information()); }
-  double speed_px_per_ms() const { return std::sqrt(squared_velocity_ / std::max(1, num_moving_)); }
+  double delay_ns() const { return kNsPerMs * product_ / information(); }
+  double delayStdev_ns() const { return kNsPerMs * std::sqrt(squares_px2_ / std::max(1, num_components_) / information()); }
+  double speedPerMs_px() const { return std::sqrt(squared_velocity_ / std::max(1, num_moving_)); }
 
  private:
   static constexpr double kMinInformation = 1e-6;  // of that which known poses and cameras would give
@@ -199,9 +199,9 @@ std::vector<CameraTiming> cameraTimings(const pipeline::CalibrationResult& resul
     if (fit.isDetermined()) {
       timing.num_views = static_cast<int>(stamp_differences_ns.size());
       timing.median_stamp_ns = median(stamp_differences_ns);
-      timing.delay_ns = fit.delay_ms() * kNsPerMs;
-      timing.delay_stdev_ns = fit.delayStdev_ms() * kNsPerMs;
-      timing.speed_px_per_ms = fit.speed_px_per_ms();
+      timing.delay_ns = fit.delay_ns();
+      timing.delay_stdev_ns = fit.delayStdev_ns();
+      timing.speed_px_per_ms = fit.speedPerMs_px();
       timings.push_back(timing);
     }
   }

@@ -92,8 +92,10 @@ void drawReport(const std::string& script, const std::string& folder, const std:
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw InputError(lastLine(log));
   }
-  io::writeFile(pdf_path, contents(folder + "/report.pdf"));
-  io::writeFile(html_path, contents(folder + "/report.html"));
+  io::AtomicFileSet together;
+  together.add(pdf_path).write(contents(folder + "/report.pdf"));
+  together.add(html_path).write(contents(folder + "/report.html"));
+  together.commit();
 }
 
 }  // namespace tartan_calib::report

@@ -36,7 +36,7 @@ constexpr int kFewSharedViews = 5;
 constexpr double kMaxDifference_ratio = 4.0;
 constexpr double kSignificance = 6.0;  ///< in stdevs
 constexpr double kMinBiasOfRms = 0.3;  ///< a pattern smaller than this share of the residuals hardly moves a model
-constexpr double kMinDelay_ms = 0.2;
+constexpr double kMinDelay_ns = 0.2e6;
 
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
@@ -204,7 +204,7 @@ void judgeTiming(const CameraTiming& timing, std::vector<Reason>& reasons) {
   const double stamps_ms = timing.median_stamp_ns / kNsPerMs;
   const double motion_px = std::abs(delay_ms) * timing.speed_px_per_ms;
   const bool is_significant = std::abs(timing.delay_ns) > kSignificance * timing.delay_stdev_ns &&
-                              std::abs(delay_ms) > kMinDelay_ms && timing.num_views >= kFewSharedViews;
+                              std::abs(timing.delay_ns) > kMinDelay_ns && timing.num_views >= kFewSharedViews;
   if (!is_significant || motion_px < kTimingMotion_px.usable) {
     return;
   }
