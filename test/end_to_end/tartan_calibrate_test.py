@@ -29,7 +29,7 @@ class WideRecording(unittest.TestCase):
 
     def tartan_calibrate(self, save_dir, *flags):
         return run("tartan_calibrate", "--bag", self.bag, "--target", self.target, "--topics", "/cam0/image_raw", "--models",
-                   "ds-none", "--save_dir", save_dir, "--dont-show-report", *flags)
+                   "ds-none", "--save_dir", save_dir, "--no-report", *flags)
 
     def score(self, file):
         """(found, false) of the corners of a file against the truth."""
@@ -46,7 +46,7 @@ class Views(WideRecording):
                             "pinhole": ["--projections", "pinhole", "--fovs", 120, "--fovs", 120, "--poses", 0, "--poses", 0,
                                         "--resolutions", 1200, "--resolutions", 1200]}.items():
             finished = calibrate(self.bag, self.target, ["ds-none"],
-                                 extra=["--max-rounds", 0, "--export-corners", "--no-report", *flags])
+                                 extra=["--max-rounds", 0, "--export-corners", *flags])
             self.assertEqual(finished.returncode, 0, finished.stderr)
             found[name], false = self.score(self.folder / "wide-corners.csv")
             self.assertEqual(false, 0, name)
