@@ -20,7 +20,7 @@ from benchmarks.truth import Score, Truth, bands, board_point, project
 COLOURS = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#D55E00", "#0072B2", "#CC79A7"]
 MARKERS = "sD^ovPX"
 DPI = 100
-NUM_COLOURS = 256  # of the file: enough for lines and maps, and a third of the bytes
+NUM_COLOURS = 128  # of the file: enough for lines and maps, and a third of the bytes
 
 
 def save(figure, name):
@@ -133,7 +133,8 @@ def plot_symmetry(recording, stamp_ns, corner_id):
 
 
 CROP_PX = 12  # around a missed corner
-CROPS = (4, 9)
+CROP_COLUMNS = 9
+MAX_CROPS = 4 * CROP_COLUMNS
 
 
 def plot_missed(recording):
@@ -141,10 +142,13 @@ def plot_missed(recording):
     truth = Truth(recording)
     missed = np.flatnonzero(truth.asked & ~Score(truth, ours(recording, "rounds").corners).found)
     missed = missed[np.argsort(-truth.polar_deg[missed])]
-    shown = missed[np.unique(np.linspace(0, len(missed) - 1, CROPS[0] * CROPS[1]).astype(int))]
+    if len(missed) == 0:
+        return
+    shown = missed[np.unique(np.linspace(0, len(missed) - 1, MAX_CROPS).astype(int))]
     stamps = set(truth.stamp_ns[shown].tolist())
     pictures = {stamp: gray for stamp, gray in images(recording.files[0]) if stamp in stamps}
-    figure, axes = plt.subplots(*CROPS, figsize=(12, 6.4))
+    num_rows = -(-len(shown) // CROP_COLUMNS)
+    figure, axes = plt.subplots(num_rows, CROP_COLUMNS, figsize=(12, 0.5 + 1.5 * num_rows))
     for axis in axes.flat:
         axis.axis("off")
     for axis, row in zip(axes.flat, shown):
@@ -153,8 +157,8 @@ def plot_missed(recording):
         axis.plot(u, v, "o", markersize=14, markerfacecolor="none", markeredgecolor="#E69F00", markeredgewidth=1.5)
         axis.set(xlim=(u - CROP_PX, u + CROP_PX), ylim=(v + CROP_PX, v - CROP_PX))
         axis.set_title(f"{truth.polar_deg[row]:.0f}°, {truth.motion_px[row]:.1f} px", fontsize=9)
-    figure.suptitle(f"{recording.name}: {len(shown)} of the {len(missed)} corners that all rounds miss; polar angle, motion during "
-                    "the exposure")
+    figure.suptitle(f"{recording.name}: {len(missed)} corners missed by all rounds ({len(shown)} shown); polar angle, motion "
+                    "during the exposure")
     figure.tight_layout()
     save(figure, f"missed_{recording.name}")
 
