@@ -1,6 +1,7 @@
 #include "quad_finder.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -9,7 +10,7 @@ namespace {
 
 /// Sides of the windows against whose means a pixel is dark, from less than the smallest tags to more than the largest.
 constexpr std::array<int, 4> kWindows_px = {15, 31, 63, 127};
-constexpr double kDarker_grey = 6.0;
+constexpr double kDarkerGrey = 6.0;
 /// Bridges at the corners are cut by taking this away from every dark area.
 constexpr int kErosion_px = 1;
 /// From the centres of the outermost pixels that are left to the edge.
@@ -97,7 +98,7 @@ std::vector<Quad> findQuads(const cv::Mat& gray) {
   const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * kErosion_px + 1, 2 * kErosion_px + 1));
   for (const int window_px : kWindows_px) {
     cv::Mat dark;
-    cv::adaptiveThreshold(gray, dark, 255.0, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, window_px, kDarker_grey);
+    cv::adaptiveThreshold(gray, dark, 255.0, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, window_px, kDarkerGrey);
     cv::erode(dark, dark, kernel);
     std::vector<Outline> outlines;
     cv::findContours(dark, outlines, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
