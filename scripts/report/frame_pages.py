@@ -4,7 +4,7 @@ import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
-from style import CYCLE, GRADES, GREEN, GREY, ORANGE, RED, equal_3d_axes, magnification, page, panels
+from style import CYCLE, GRADES, GREY, ORANGE, RED, equal_3d_axes, magnification, page, panels
 
 WORST_LENGTH_RATIO = 0.012  # of the image's width, for most of the lines
 WRAP_COLUMNS = 125
@@ -18,7 +18,7 @@ def verdict_page(report):
     lines = [("black", fact) for fact in verdict["facts"]]
     lines += [(GRADES[reason["grade"]], f"{reason['grade']}: {reason['text']}") for reason in verdict["reasons"]]
     if not verdict["reasons"]:
-        lines.append((GREEN, "Nothing speaks against this calibration."))
+        lines.append((GRADES["good"], "Nothing speaks against this calibration."))
     lines += [("#404040", f"note: {warning}") for warning in report.warnings]
     height = 0.79
     for colour, text in lines:

@@ -20,7 +20,7 @@ PURPLE = "#CC79A7"
 SKY = "#56B4E9"
 GREY = "#7F7F7F"
 CYCLE = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, "#000000", "#F0E442"]
-GRADES = {"good": GREEN, "usable": ORANGE, "repeat": RED}
+GRADES = {"good": "#007A5A", "usable": "#855B00", "repeat": "#B84F00"}  # dark enough for text on white
 AMOUNTS = "viridis"
 
 plt.rcParams.update({
