@@ -54,7 +54,7 @@ pid_t start(const std::array<const char*, 5>& words, const std::string& log) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   std::array<char*, 5> arguments{};
   for (std::size_t i = 0; i < words.size(); ++i) {
-    arguments[i] = const_cast<char*>(words[i]);  // NOLINT: the interface of exec, which changes nothing
+    arguments[i] = const_cast<char*>(words[i]);  // the interface of exec, which changes nothing
   }
   pid_t process = 0;
   const int error = posix_spawnp(&process, words[0], &actions, &attributes, arguments.data(), environ);

@@ -25,7 +25,7 @@ class Table {
 
   /// Writes the file and tells what describes it.
   std::string write(const std::string& folder) const {
-    const auto* bytes = reinterpret_cast<const char*>(values_.data());  // NOLINT: doubles are their bytes
+    const auto* bytes = reinterpret_cast<const char*>(values_.data());  // doubles are their bytes
     io::writeFile(folder + "/" + file_, {bytes, values_.size() * sizeof(double)});
     return JsonObject().add("file", file_).add("columns", columns_).text();
   }

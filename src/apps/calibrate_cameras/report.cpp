@@ -81,7 +81,7 @@ void showReport(const ReportFiles& files) {
   }
   std::string program = "xdg-open";
   std::string page = files.html;
-  char* words[] = {program.data(), page.data(), nullptr};  // NOLINT: the interface of exec
+  char* words[] = {program.data(), page.data(), nullptr};  // the interface of exec
   pid_t process = 0;
   posix_spawnp(&process, words[0], nullptr, nullptr, words, environ);  // where it is absent, nothing is shown
 }
