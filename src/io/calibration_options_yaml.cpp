@@ -41,6 +41,26 @@ void addSolveOptions(YamlWriter& yaml, const calibration::SolveOptions& solve) {
   yaml.close();
 }
 
+/// Every virtual view as [width, height, fu, fv, cu, cv, rows of R_cam_view].
+void addProjections(YamlWriter& yaml, const pipeline::Projections& projections) {
+  constexpr int kNumNumbers = 15;
+  if (projections.rectified) {
+    yaml.add("rectified_view", yamlFlow(std::vector<int>{projections.rectified->width, projections.rectified->height}));
+  }
+  if (projections.pinholes.empty()) {
+    return;
+  }
+  yaml.open("pinhole_views");
+  for (const pipeline::VirtualPinhole& pinhole : projections.pinholes) {
+    const Eigen::Matrix3d columns_are_rows = pinhole.R_cam_view.transpose();
+    Eigen::VectorXd numbers(kNumNumbers);
+    numbers << pinhole.width, pinhole.height, pinhole.focal_px, pinhole.centre_px,
+        Eigen::Map<const Eigen::VectorXd>(columns_are_rows.data(), columns_are_rows.size());
+    yaml.item(yamlFlow(numbers));
+  }
+  yaml.close();
+}
+
 struct AddTarget {
   YamlWriter& yaml;
 
@@ -83,6 +103,7 @@ void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target:
   yaml.add("approx_sync_s", yamlFloat(static_cast<double>(options.approx_sync_ns) * kSecondsPerNanosecond));
   yaml.add("max_rounds", std::to_string(options.max_rounds));
   yaml.add("corner_filter", options.recovery.filter == detection::CornerFilter::kQuads ? "quads" : "image");
+  addProjections(yaml, options.projections);
   yaml.open("detector");
   yaml.add("min_border_distance_px", yamlFloat(options.detector.min_border_distance_px));
   yaml.add("max_hamming", std::to_string(options.detector.max_hamming));

@@ -1,7 +1,9 @@
 #include "tartan_calib/io/calibration_yaml.h"
 
 #include <gtest/gtest.h>
+
 #include <yaml-cpp/yaml.h>
+#include <cmath>
 
 #include "example_result.h"
 
@@ -32,6 +34,8 @@ YAML::Node parsed(const pipeline::CalibrationResult& result) {
   pipeline::CalibrateOptions options;
   options.models = {"pinhole-radtan", "pinhole-radtan"};
   options.solve.outlier_sigma = 3.5;
+  options.projections.rectified = pipeline::ViewSize{1.0, 1.0, 800, 600};
+  options.projections.pinholes = {pipeline::pinholeView({1.0, 1.0, 300, 200}, 0.5, 0.0)};
   const RunInfo run{"my bag.bag", "target.yaml", "calibrate_cameras --bag 'my bag.bag'\n"};
   return YAML::Load(calibrationText(result, options, run));
 }
@@ -46,6 +50,16 @@ TEST(CalibrationYaml, HoldsTheRunAndItsOptions) {
   EXPECT_DOUBLE_EQ(yaml["options"]["approx_sync_s"].as<double>(), 0.02);
   EXPECT_EQ(yaml["options"]["solve"]["outlier_sigma"].as<double>(), 3.5);
   EXPECT_EQ(yaml["target"]["tagSize"].as<double>(), 0.088);
+}
+
+TEST(CalibrationYaml, HoldsTheVirtualViews) {
+  const YAML::Node options = parsed(exampleResult())["options"];
+  EXPECT_EQ(options["rectified_view"].as<std::vector<int>>(), (std::vector<int>{800, 600}));
+  const auto view = options["pinhole_views"][0].as<std::vector<double>>();
+  ASSERT_EQ(view.size(), 15U);
+  EXPECT_EQ(view[0], 300.0);
+  EXPECT_EQ(view[5], 99.5);
+  EXPECT_DOUBLE_EQ(view[11], -std::sin(0.5));  // row 1, column 2 of a turn about x
 }
 
 TEST(CalibrationYaml, HoldsEveryCamerasParametersCountsAndBands) {

@@ -75,7 +75,8 @@ TEST_P(ProjectionsTest, CombineWithTheRounds) {
   EXPECT_EQ(with.repeated, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ProjectionsTest, testing::Values(cube(), Projections{{}, kSize}));
+INSTANTIATE_TEST_SUITE_P(Views, ProjectionsTest, testing::Values(cube(), Projections{{}, kSize}),
+                         [](const auto& view) { return view.param.rectified ? "Rectified" : "Cube"; });
 
 TEST(Projections, GiveTheSameWhateverTheThreads) {
   const CalibrationResult one = run(cube(), 0, 1);
