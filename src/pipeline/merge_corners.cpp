@@ -24,6 +24,19 @@ double distanceToPrediction(const Corner& corner, const detection::BoardMap& map
   return px ? (*px - corner.px).norm() : std::numeric_limits<double>::infinity();
 }
 
+/// Corners farther from their predictions than this, and than several times what is usual in the image, are something else:
+/// the edge of a hand that covers the corner.
+constexpr double kFits_px = 1.0;
+constexpr double kUsualFactor = 3.0;
+
+/// How far from its prediction a corner of this image may be: as good as the model and the pose are where most were seen.
+double fitLimit(const std::vector<double>& distances_px) {
+  std::vector<double> sorted = distances_px;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return std::max(kFits_px, kUsualFactor * *middle);
+}
+
 }  // namespace
 
 std::vector<Corner> refineInImage(const cv::Mat& gray, const detection::BoardMap& map,
@@ -58,11 +71,18 @@ void mergeCorners(const std::vector<Corner>& more, const detection::BoardMap& ma
   for (const Corner& corner : corners) {
     by_id[corner.corner_id] = corner;
   }
+  std::vector<double> distances_px;
   for (const Corner& corner : more) {
-    Corner& known = by_id.emplace(corner.corner_id, corner).first->second;
-    const double known_px = distanceToPrediction(known, map, target_points);
-    if (distanceToPrediction(corner, map, target_points) + kSamePlace_px < known_px) {
-      known = corner;
+    distances_px.push_back(distanceToPrediction(corner, map, target_points));
+  }
+  const double limit_px = more.empty() ? 0.0 : fitLimit(distances_px);
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    if (distances_px[i] > limit_px) {
+      continue;
+    }
+    Corner& known = by_id.emplace(more[i].corner_id, more[i]).first->second;
+    if (distances_px[i] + kSamePlace_px < distanceToPrediction(known, map, target_points)) {
+      known = more[i];
     }
   }
   corners.clear();

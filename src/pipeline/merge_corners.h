@@ -14,7 +14,8 @@ std::vector<observation::Corner> refineInImage(const cv::Mat& gray, const detect
                                                const std::vector<Eigen::Vector3d>& target_points, double half_window_m,
                                                const std::vector<observation::Corner>& corners);
 
-/// Adds corners to those known, by increasing id and each id once. Where both have a corner, the one known stays unless the
+/// Adds corners to those known, by increasing id and each id once; not those that are much farther from their predictions
+/// than most, nor any where there is no prediction. Where both have a corner, the one known stays unless the
 /// other is nearer to the prediction by more than two refinements of one corner ever differ.
 void mergeCorners(const std::vector<observation::Corner>& more, const detection::BoardMap& map,
                   const std::vector<Eigen::Vector3d>& target_points, std::vector<observation::Corner>& corners);
