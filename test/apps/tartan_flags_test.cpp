@@ -62,6 +62,15 @@ TEST(TartanFlags, LookInViewsAloneUnlessTheCornerPredictorIsNamed) {
   EXPECT_EQ(argumentsOf({"--projections", "pinhole", "--max-rounds", "3"}).calibrate.max_rounds, 3);
 }
 
+TEST(TartanFlags, TakeTheCorrectionThresholdInSquaredPixels) {
+  const auto recovery = argumentsOf({"--correction-threshold", "6.25"}).calibrate.recovery;
+  EXPECT_EQ(recovery.filter, detection::CornerFilter::kQuads);
+  EXPECT_DOUBLE_EQ(recovery.max_quad_distance_px, 2.5);
+  EXPECT_EQ(argumentsOf({}).calibrate.recovery.filter, detection::CornerFilter::kImage);
+  EXPECT_TRUE(contains(usageError({"--correction-threshold", "-1"}), "must be above 0"));
+  EXPECT_TRUE(contains(usageError({"--correction-threshold", "near"}), "needs a number, not 'near'"));
+}
+
 TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
   for (const Words& words : {Words{"--min-init-corners-autocomplete", "24"}, Words{"--min-tag-size-autocomplete", "0"},
                              Words{"--refine-magnitude-reject", "2.0"}, Words{"--symmetry-edge-threshold", "10"},

@@ -66,6 +66,18 @@ TartanFlag withoutEffect(const char* flag, Value value, const std::string& reaso
   return {flag, value == Value::kNone ? 0U : 1U, apply};
 }
 
+/// TartanCalib compares it with squared distances.
+void applyCorrectionThreshold(const Words& values, TartanCommand& command) {
+  const double threshold_px2 = number("correction-threshold", values);
+  if (threshold_px2 <= 0.0) {
+    throw UsageError("--correction-threshold must be above 0: TartanCalib compares it with squared pixels");
+  }
+  const std::string threshold_px = std::to_string(std::sqrt(threshold_px2));
+  command.words.insert(command.words.end(), {"--corner-filter", "quads", "--correction-threshold", threshold_px});
+  command.notes.push_back("--correction-threshold filters corners by quadrilaterals within " + threshold_px +
+                          " px; without it they are tested in the image, which finds more");
+}
+
 void applyProjections(const Words& values, TartanCommand& command) {
   command.words.emplace_back("--projections");
   command.words.insert(command.words.end(), values.begin(), values.end());
@@ -105,7 +117,7 @@ const std::vector<TartanFlag>& tartanFlags() {
                     "images with few corners or none are gone through as well"),
       withoutEffect("min-tag-size-autocomplete", Value::kNumber,
                     "corners are looked for where the nearest other one is at least 4 px away"),
-      withoutEffect("correction-threshold", Value::kNumber, "corners are tested in the image, without quadrilaterals"),
+      {"correction-threshold", 1, applyCorrectionThreshold},
       withoutEffect("min-resize-window-size", Value::kNumber, "corners are refined by symmetry, in a window on the board"),
       withoutEffect("max-resize-window-size", Value::kNumber, "corners are refined by symmetry, in a window on the board"),
       withoutEffect("symmetry-refinement", Value::kNone, "corners are refined by symmetry anyway"),
@@ -200,7 +212,7 @@ std::string tartanHelpText() {
       --save_dir results/ --log_dest rig
 
 writes results/rig0-camchain.yaml and rig0-results-cam.txt (detection alone), and the final rig1-camchain.yaml,
-rig1-results-cam.txt and rig1-calibration.yaml.
+rig1-results-cam.txt, rig1-calibration.yaml and report.
 
 Files
   --save_dir DIR            folder of the results, made where it is missing (/data/)
@@ -210,6 +222,7 @@ Files
 Where corners are looked for
   --projections P [P ...]   cornerpredictor: at their predictions, in rounds, with calibrate_cameras' tests (default)
                             pinhole, homography, cube: in virtual views remapped with the model; none: only without a model
+  --correction-threshold V  filter corners by quadrilaterals, as the paper does, within sqrt(V) px (calibrate_cameras takes px)
   --fovs, --poses, --resolutions
                             of the virtual views, two rows with one value per projection: see calibrate_cameras --help
 
