@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 class DrawTest : public testing::Test {
  protected:
   void draw(const std::string& script, const std::function<bool()>& is_cancelled = {}) {
-    std::ofstream(folder_.file("script.py")) << script;
-    drawReport(folder_.file("script.py"), folder_.path().string(), pdf_, html_, is_cancelled);
+    std::ofstream(folder.file("script.py")) << script;
+    drawReport(folder.file("script.py"), folder.path().string(), pdf, html, is_cancelled);
   }
 
   static std::string contents(const std::string& path) {
@@ -27,15 +27,15 @@ class DrawTest : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  test_support::TemporaryFolder folder_;
-  const std::string pdf_ = folder_.file("x-report-cam.pdf");
-  const std::string html_ = folder_.file("x-report-cam.html");
+  test_support::TemporaryFolder folder;
+  const std::string pdf = folder.file("x-report-cam.pdf");
+  const std::string html = folder.file("x-report-cam.html");
 };
 
 TEST_F(DrawTest, MovesWhatTheScriptDrew) {
   draw("import sys\nfor name in ('pdf', 'html'): open(sys.argv[1] + '/report.' + name, 'w').write(name)\n");
-  EXPECT_EQ(contents(pdf_), "pdf");
-  EXPECT_EQ(contents(html_), "html");
+  EXPECT_EQ(contents(pdf), "pdf");
+  EXPECT_EQ(contents(html), "html");
 }
 
 TEST_F(DrawTest, TellsTheLastLineOfAScriptThatFails) {
@@ -45,21 +45,21 @@ TEST_F(DrawTest, TellsTheLastLineOfAScriptThatFails) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "Python lacks matplotlib: install python3-matplotlib");
   }
-  EXPECT_FALSE(fs::exists(pdf_));
-  EXPECT_FALSE(fs::exists(html_));
+  EXPECT_FALSE(fs::exists(pdf));
+  EXPECT_FALSE(fs::exists(html));
 }
 
 TEST_F(DrawTest, KeepsAnOlderReportWhereTheScriptFails) {
-  std::ofstream(pdf_) << "old";
+  std::ofstream(pdf) << "old";
   EXPECT_THROW(draw("raise SystemExit(1)\n"), InputError);
-  EXPECT_EQ(contents(pdf_), "old");
+  EXPECT_EQ(contents(pdf), "old");
 }
 
 TEST_F(DrawTest, EndsTheScriptAndItsChildrenWhenCancelled) {
   const auto begin = std::chrono::steady_clock::now();
   draw("import subprocess, sys, time\nsubprocess.Popen(['sleep', '60'])\ntime.sleep(60)\n", [] { return true; });
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
-  EXPECT_FALSE(fs::exists(pdf_));
+  EXPECT_FALSE(fs::exists(pdf));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace tartan_calib::report {
 /// images `delay_ms` after the first, and its stamps do not say so.
 inline test_support::Scene movingScene(double delay_ms) {
   constexpr int kViews = 80;
-  constexpr double kPeriod_ms = 50.0;
+  constexpr double kPeriodMs = 50.0;
   constexpr double kNoise_px = 0.05;
   test_support::Scene scene;
   scene.target_points = target::cornerPoints(target::AprilGrid());
@@ -27,17 +27,17 @@ inline test_support::Scene movingScene(double delay_ms) {
   };
   for (int i = 0; i < kViews; ++i) {
     observation::View view;
-    view.stamp_ns = static_cast<std::int64_t>((i + 1) * kPeriod_ms * 1e6);
+    view.stamp_ns = static_cast<std::int64_t>((i + 1) * kPeriodMs * 1e6);
     for (int camera = 0; camera < 2; ++camera) {
       const calibration::RigCamera& rig_camera = scene.rig.cameras[static_cast<std::size_t>(camera)];
-      const double time_ms = i * kPeriod_ms + camera * delay_ms;
+      const double time_ms = i * kPeriodMs + camera * delay_ms;
       view.cameras.push_back(
           test_support::visibleCorners(rig_camera.camera, scene.target_points, rig_camera.T_cam_rig * pose(time_ms), M_PI));
       view.cameras.back().camera_index = camera;
       view.cameras.back().stamp_ns = view.stamp_ns;
     }
     scene.views.push_back(view);
-    scene.T_rig_target.push_back(pose(i * kPeriod_ms));
+    scene.T_rig_target.push_back(pose(i * kPeriodMs));
   }
   test_support::addNoise(scene.views, kNoise_px, 1);
   return scene;

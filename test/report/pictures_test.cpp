@@ -49,38 +49,38 @@ pipeline::CameraStream streamOf(const test_support::Scene& scene) {
 class PicturesTest : public testing::Test {
  protected:
   CameraPictures take(const PictureOptions& options = {}) {
-    const pipeline::CalibrationResult result = solved(scene_);
-    return takePictures({streamOf(scene_)}, result, seenCorners(result), folder_.path().string(), options).front();
+    const pipeline::CalibrationResult result = solved(waved);
+    return takePictures({streamOf(waved)}, result, seenCorners(result), folder.path().string(), options).front();
   }
 
   /// Brightness of a picture where it shows a pixel of its image.
   double greyAt(const Picture& picture, const Eigen::Vector2d& px) const {
-    const cv::Mat image = cv::imread(folder_.file(picture.file), cv::IMREAD_GRAYSCALE);
+    const cv::Mat image = cv::imread(folder.file(picture.file), cv::IMREAD_GRAYSCALE);
     const Eigen::Vector2d place =
         (px - picture.origin_px.cast<double>() + Eigen::Vector2d(0.5, 0.5)) * picture.scale - Eigen::Vector2d(0.5, 0.5);
     return image.at<unsigned char>(cvRound(place.y()), cvRound(place.x()));
   }
 
   const Eigen::Vector2d& firstCorner(int view) const {
-    return scene_.views[static_cast<std::size_t>(view)].cameras.front().corners.front().px;
+    return waved.views[static_cast<std::size_t>(view)].cameras.front().corners.front().px;
   }
 
-  test_support::TemporaryFolder folder_;
-  test_support::Scene scene_ = scene();
+  test_support::TemporaryFolder folder;
+  test_support::Scene waved = scene();
 };
 
 TEST_F(PicturesTest, ShowEveryReadableViewAtTheSizeThatTheySay) {
   const CameraPictures pictures = take();
-  EXPECT_EQ(pictures.frames.size(), scene_.views.size() - 1);
+  EXPECT_EQ(pictures.frames.size(), waved.views.size() - 1);
   for (const Picture& frame : pictures.frames) {
     EXPECT_NE(frame.view, static_cast<int>(kUnreadable));
-    EXPECT_LE(cv::imread(folder_.file(frame.file)).cols, 480);
+    EXPECT_LE(cv::imread(folder.file(frame.file)).cols, 480);
     EXPECT_GT(greyAt(frame, firstCorner(frame.view)), 150.0) << frame.view;
   }
 }
 
 TEST_F(PicturesTest, CutTheBoardOutOfTheWorstView) {
-  std::vector<observation::Corner>& corners = scene_.views[5].cameras.front().corners;
+  std::vector<observation::Corner>& corners = waved.views[5].cameras.front().corners;
   for (std::size_t i = 1; i < corners.size(); i += 2) {
     corners[i].px.x() += 0.4;
   }
