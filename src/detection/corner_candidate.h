@@ -11,7 +11,6 @@ namespace tartan_calib::detection {
 /// What to look for around a predicted corner.
 struct CornerSearch {
   XCornerTemplate expected;
-  double half_window_m = 0.0;  ///< of the template, and for the refinement
   double radius_px = 0.0;
   double min_correlation = 0.0;
 };
@@ -20,7 +19,6 @@ struct CornerSearch {
 struct CornerSeed {
   int corner_id = -1;
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
-  double half_window_m = 0.0;
 };
 
 /// A corner of the board that should be in the image, and what was found there.

@@ -21,10 +21,21 @@ constexpr double kSecondRadius_px = 1.5;
 /// Opposite corners alternate in polarity; beyond this share of the distance to the next one the search could meet it.
 constexpr double kMaxRadiusShare = 0.4;
 
-/// Where something else begins within the window, such as the lens' rim or a hand, half of it may do.
-constexpr double kInnerShare = 0.5;
-/// A smaller window shows less, which must look better.
+/// Of the half-width in which the board is symmetric, for a template: the rest is for blur.
+constexpr double kTemplateShare = 0.75;
+/// Where something else begins within the window, such as the lens' rim or a hand, its inner part may do. It shows less,
+/// which must look better.
 constexpr double kInnerCorrelation = 0.9;
+
+/// A window that is wider than the board is symmetric is not bounded in pixels, but for the time it takes.
+constexpr double kWideWindow_px = 40.0;
+
+/// TartanCalib's calls of cornerSubPix.
+WindowRefineOptions tartanWindow(int half_window_px) {
+  constexpr int kMaxIterations = 40;
+  constexpr double kMinStep_px = 0.03;
+  return {half_window_px, kMaxIterations, kMinStep_px, std::sqrt(2.0) * half_window_px};
+}
 
 /// Distance [px] from a corner to the nearest of its four neighbours on the lattice.
 double nearestNeighbour(const std::vector<std::optional<Eigen::Vector2d>>& predicted, const target::Lattice& lattice,
@@ -50,7 +61,8 @@ CornerRecovery::CornerRecovery(const target::Target& target, const RecoveryOptio
       options_(options),
       corner_points_(target::cornerPoints(target)),
       lattice_(target::cornerLattice(target)),
-      half_window_m_(options.symmetry_window * target::symmetricHalfWidth(target)) {
+      neighbours_(target),
+      half_window_m_(kTemplateShare * target::symmetricHalfWidth(target)) {
   if (const auto* grid = std::get_if<target::AprilGrid>(&target_)) {
     payload_ = std::make_shared<const TagPayload>(*grid);
   } else if (options.filter == CornerFilter::kQuads) {
@@ -104,7 +116,7 @@ std::vector<CornerCandidate> CornerRecovery::recoverOnQuads(const cv::Mat& gray,
   for (const auto& [corner_id, px] : matchQuads(findQuads(gray), grid, predicted_px, options_.max_quad_distance_px)) {
     CornerCandidate candidate;
     candidate.corner_id = corner_id;
-    candidate.refined = refineAt(gray, map, {corner_id, px, half_window_m_});
+    candidate.refined = refineAt(gray, map, {corner_id, px});
     candidates.push_back(candidate);
   }
   return candidates;
@@ -147,10 +159,10 @@ void CornerRecovery::find(const cv::Mat& gray, const BoardMap& map, const Eigen:
   XCornerTemplate expected = candidate.expected;
   expected.px += expected_shift_px;
   const double radius = std::min(radius_px, kMaxRadiusShare * candidate.neighbour_px);
-  findWithin(gray, map, {expected, half_window_m_, radius, options_.min_correlation}, candidate);
+  findWithin(gray, map, {expected, radius, options_.min_correlation}, candidate);
   if (!candidate.isFound()) {
     const double min_correlation = std::max(options_.min_correlation, kInnerCorrelation);
-    findWithin(gray, map, {innerTemplate(expected), kInnerShare * half_window_m_, radius, min_correlation}, candidate);
+    findWithin(gray, map, {innerTemplate(expected), radius, min_correlation}, candidate);
   }
 }
 
@@ -160,7 +172,7 @@ void CornerRecovery::findWithin(const cv::Mat& gray, const BoardMap& map, const 
   if (!match || match->correlation < search.min_correlation || match->contrast < options_.min_contrast) {
     return;
   }
-  const auto refined = refineAt(gray, map, {candidate.corner_id, match->px, search.half_window_m});
+  const auto refined = refineAt(gray, map, {candidate.corner_id, match->px});
   if (refined) {
     candidate.match = match;
     candidate.refined = refined;
@@ -169,6 +181,13 @@ void CornerRecovery::findWithin(const cv::Mat& gray, const BoardMap& map, const 
 
 std::optional<RefinedCorner> CornerRecovery::refineAt(const cv::Mat& gray, const BoardMap& map,
                                                       const CornerSeed& seed) const {
+  if (options_.refinement == Refinement::kFixed) {
+    return refineInWindow(gray, seed.px, {});
+  }
+  if (options_.refinement == Refinement::kAdaptive) {
+    const double nearest_px = neighbours_.nearest_px(map, seed.corner_id);
+    return refineInWindow(gray, seed.px, tartanWindow(adaptiveHalfWindow(nearest_px, options_.adaptive_window)));
+  }
   const Eigen::Vector2d corner_m = corner_points_[static_cast<std::size_t>(seed.corner_id)].head<2>();
   const auto origin_px = map(corner_m);
   const auto offset_map = [&](const Eigen::Vector2d& offset_m) -> Eigen::Vector2d {
@@ -177,7 +196,12 @@ std::optional<RefinedCorner> CornerRecovery::refineAt(const cv::Mat& gray, const
                            : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   };
   RefineOptions refine;
-  refine.half_window = seed.half_window_m;
+  refine.half_window = options_.symmetry_window * target::symmetricHalfWidth(target_);
+  if (options_.symmetry_window > 1.0) {
+    refine.may_shrink = false;
+    refine.max_half_window_px = kWideWindow_px;
+    refine.max_residual_ratio = std::numeric_limits<double>::infinity();
+  }
   return refineBySymmetry(gray, seed.px, offset_map, refine);
 }
 

@@ -147,7 +147,7 @@ class SymmetryRefinement {
         continue;
       }
       attempts.push_back(*attempt);
-      if (i == 0 && attempt->corner.residual_ratio <= kFineResidual_ratio) {
+      if (!options_.may_shrink || (i == 0 && attempt->corner.residual_ratio <= kFineResidual_ratio)) {
         break;
       }
     }

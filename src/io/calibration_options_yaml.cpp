@@ -24,6 +24,28 @@ std::string linearSolverName(LinearSolver solver) {
   return "";
 }
 
+std::string refinementName(detection::Refinement refinement) {
+  switch (refinement) {
+    case detection::Refinement::kSymmetry:
+      return "symmetry";
+    case detection::Refinement::kAdaptive:
+      return "adaptive";
+    case detection::Refinement::kFixed:
+      return "fixed";
+  }
+  return "";
+}
+
+void addRefinementOptions(YamlWriter& yaml, const detection::RecoveryOptions& recovery) {
+  yaml.open("refinement");
+  yaml.add("method", refinementName(recovery.refinement));
+  yaml.add("symmetry_window", yamlFloat(recovery.symmetry_window));
+  yaml.add("window_scale", yamlFloat(recovery.adaptive_window.scale));
+  yaml.add("min_half_window_px", std::to_string(recovery.adaptive_window.min_half_window_px));
+  yaml.add("max_half_window_px", std::to_string(recovery.adaptive_window.max_half_window_px));
+  yaml.close();
+}
+
 void addSolveOptions(YamlWriter& yaml, const calibration::SolveOptions& solve) {
   yaml.open("solve");
   yaml.add("linear_solver", linearSolverName(solve.linear_solver));
@@ -109,6 +131,7 @@ void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target:
   yaml.add("max_hamming", std::to_string(options.detector.max_hamming));
   yaml.add("max_refine_shift_px", yamlFloat(options.detector.max_refine_shift_px));
   yaml.close();
+  addRefinementOptions(yaml, options.recovery);
   addSolveOptions(yaml, options.solve);
   yaml.close();
 }

@@ -47,6 +47,29 @@ TEST(Arguments, HaveKalibrsDefaults) {
   EXPECT_FALSE(arguments.export_corners);
 }
 
+TEST(Arguments, ChooseTheRefinementAndItsWindow) {
+  const auto recovery = [](const Words& words) { return parsedWith(words).calibrate.recovery; };
+  EXPECT_EQ(recovery({}).refinement, detection::Refinement::kSymmetry);
+  EXPECT_EQ(recovery({"--refinement", "fixed"}).refinement, detection::Refinement::kFixed);
+  EXPECT_DOUBLE_EQ(recovery({"--symmetry-window", "1.5"}).symmetry_window, 1.5);
+  const detection::RecoveryOptions adaptive = recovery({"--refinement", "adaptive", "--window-scale", "0.3",
+                                                        "--min-resize-window-size", "3", "--max-resize-window-size", "9"});
+  EXPECT_EQ(adaptive.refinement, detection::Refinement::kAdaptive);
+  EXPECT_DOUBLE_EQ(adaptive.adaptive_window.scale, 0.3);
+  EXPECT_EQ(adaptive.adaptive_window.min_half_window_px, 3);
+  EXPECT_EQ(adaptive.adaptive_window.max_half_window_px, 9);
+}
+
+TEST(Arguments, NameWhatIsWrongWithARefinement) {
+  const auto error = [](const Words& words) { return usageError(commandWith(words)); };
+  EXPECT_TRUE(contains(error({"--refinement", "best"}), "symmetry, adaptive or fixed, not 'best'"));
+  EXPECT_TRUE(contains(error({"--symmetry-window", "0"}), "--symmetry-window must be above 0"));
+  EXPECT_TRUE(contains(error({"--refinement", "fixed", "--symmetry-window", "1"}), "needs --refinement symmetry"));
+  EXPECT_TRUE(contains(error({"--window-scale", "0.5"}), "--window-scale needs --refinement adaptive"));
+  EXPECT_TRUE(contains(error({"--refinement", "adaptive", "--window-scale", "-1"}), "--window-scale must be above 0"));
+  EXPECT_TRUE(contains(error({"--refinement", "adaptive", "--min-resize-window-size", "9"}), "the first the smaller"));
+}
+
 TEST(Arguments, SetEveryOption) {
   const Arguments arguments = parsedWith({"--bag-from-to",
                                           "2.5",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tartan_calib/detection/board_map.h"
+#include "tartan_calib/detection/window_refine.h"
 #include "tartan_calib/observation/observation.h"
 #include "tartan_calib/target/target.h"
 
@@ -15,7 +16,6 @@ namespace tartan_calib::detection {
 struct CornerCandidate;
 struct CornerSearch;
 struct CornerSeed;
-struct RefinedCorner;
 class TagPayload;
 
 /// What says that a predicted corner is in the image.
@@ -24,16 +24,27 @@ enum class CornerFilter {
   kQuads,  ///< a quadrilateral whose four corners are close to those of one predicted tag; AprilGrids only
 };
 
+/// How corners are moved to sub-pixel accuracy.
+enum class Refinement {
+  kSymmetry,  ///< refineBySymmetry, through the map
+  kAdaptive,  ///< refineInWindow with TartanCalib's window
+  kFixed,     ///< refineInWindow with Kalibr's
+};
+
 struct RecoveryOptions {
   CornerFilter filter = CornerFilter::kImage;
   double search_radius_px = 4.0;  ///< how far a corner may be from its prediction
   double min_border_px = 2.0;     ///< corners closer to the image border are not looked for
   double min_neighbour_px = 4.0;  ///< nor those whose nearest corner on the board is closer
-  double symmetry_window = 0.75;  ///< of the refinement, as a share of the board's symmetric half-width around a corner
-  double min_correlation = 0.8;   ///< of the grey values around a corner with the pattern expected there
-  double min_contrast = 8.0;      ///< light minus dark around a corner [grey levels]
-  double max_field_deviation_px = 1.0;  ///< of a corner's shift from its prediction against its neighbours' shifts
-  double max_quad_distance_px = 1.41;   ///< kQuads: from a quadrilateral's corner to the tag's; TartanCalib's default
+  Refinement refinement = Refinement::kSymmetry;
+  /// Half-width of Refinement::kSymmetry's window, in those of the square around a corner in which the board is symmetric.
+  /// A window of more than 1 stays as large everywhere, whatever is in it.
+  double symmetry_window = 0.9;
+  AdaptiveWindowOptions adaptive_window;  ///< of Refinement::kAdaptive
+  double min_correlation = 0.8;           ///< of the grey values around a corner with the pattern expected there
+  double min_contrast = 8.0;              ///< light minus dark around a corner [grey levels]
+  double max_field_deviation_px = 1.0;    ///< of a corner's shift from its prediction against its neighbours' shifts
+  double max_quad_distance_px = 1.41;     ///< kQuads: from a quadrilateral's corner to the tag's; TartanCalib's default
 };
 
 /// Finds the corners of a board whose place in the image is roughly known. No straight edges and no decoded tag are needed:
@@ -63,7 +74,8 @@ class CornerRecovery {
   std::vector<Eigen::Vector3d> corner_points_;
   target::Lattice lattice_;
   std::shared_ptr<const TagPayload> payload_;  ///< null unless the target is an AprilGrid
-  double half_window_m_ = 0.0;
+  CornerNeighbours neighbours_;
+  double half_window_m_ = 0.0;  ///< of the templates
 };
 
 }  // namespace tartan_calib::detection

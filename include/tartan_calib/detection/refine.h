@@ -21,6 +21,8 @@ struct RefineOptions {
   int max_iterations = 12;
   double min_contrast = 4.0;         ///< [grey levels] within the window
   double max_residual_ratio = 0.25;  ///< rms asymmetry that is left, in units of the contrast
+  /// Takes a smaller window where something else than the corner is in this one.
+  bool may_shrink = true;
 };
 
 struct RefinedCorner {
@@ -30,8 +32,9 @@ struct RefinedCorner {
 };
 
 /// The point around which the image is symmetric: minimises over c the sum of (I(c + p(s)) - I(c + p(-s)))^2, s over a half
-/// window of the board. Blur does not move it, bloom neither; light that changes linearly is estimated with it. Nothing
-/// where the window leaves the image, is empty, or is not symmetric around any point near.
+/// window of the board. Blur does not move it, bloom neither; light that changes linearly is estimated with it. At the
+/// border of the image only pairs that are inside count. Nothing where the window is empty or not symmetric around any point
+/// near.
 std::optional<RefinedCorner> refineBySymmetry(const cv::Mat& gray, const Eigen::Vector2d& start_px,
                                               const BoardToPixelOffset& map, const RefineOptions& options = {});
 

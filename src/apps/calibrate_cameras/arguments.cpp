@@ -5,6 +5,7 @@
 
 #include "calibrate_cameras/flags.h"
 #include "calibrate_cameras/projection_flags.h"
+#include "calibrate_cameras/refinement_flags.h"
 #include "calibrate_cameras/rig_file.h"
 #include "common/program.h"
 
@@ -120,6 +121,7 @@ pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
   options.projections = projectionsFrom(flags);
   applyFilters(flags, options);
   applyCornerFilter(flags, options.recovery);
+  applyRefinement(flags, options.recovery);
   solve.linear_solver = linearSolver(flags.get<std::string>("linear-solver", "auto"));
   applyFix(flags.get<Words>("fix"), solve);
   return options;

@@ -36,6 +36,9 @@ po::options_description ownOptions() {
       "corner-filter", po::value<std::string>(), "")("correction-threshold", po::value<double>(), "")(
       "projections", po::value<Words>()->multitoken(), "")("fovs", columns(), "")("poses", columns(), "")("resolutions",
                                                                                                           columns(), "");
+  options.add_options()("refinement", po::value<std::string>(), "")("symmetry-window", po::value<double>(), "")(
+      "window-scale", po::value<double>(), "")("min-resize-window-size", po::value<int>(), "")("max-resize-window-size",
+                                                                                               po::value<int>(), "");
   return options;
 }
 

@@ -42,6 +42,12 @@ Corners
   --poses X .. --poses Z .. degrees about x, then z (90 0: towards -y; 0 0: ahead)
   --resolutions H .. --resolutions W ..
                             pixels of each view (1000 1000)
+  --refinement R            of corners in the rounds: symmetry (default; through the model), adaptive (TartanCalib's windows)
+                            or fixed (Kalibr's)
+  --symmetry-window W       symmetry: half-width, 1 reaches as far as the board is symmetric about a corner (0.9); the paper's
+                            on Kalibr's board is 1.5. More than 1 takes in payload and fails
+  --window-scale S  --min-resize-window-size PX  --max-resize-window-size PX
+                            adaptive: half-width as a share of the distance to the nearest corner (0.4), between (2) and (8)
 
 Solver
   --estimate-board-warp     also fit the curvature of the board
