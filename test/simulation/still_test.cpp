@@ -42,7 +42,8 @@ double whiteByRays(const BoardPattern& pattern, const camera::Camera& camera, co
   constexpr int kRays = 64;
   int white = 0;
   for (int i = 0; i < kRays * kRays; ++i) {
-    const Eigen::Vector2d offset((i % kRays + 0.5) / kRays - 0.5, (i / kRays + 0.5) / kRays - 0.5);
+    const int ray_row = i / kRays;
+    const Eigen::Vector2d offset((i % kRays + 0.5) / kRays - 0.5, (ray_row + 0.5) / kRays - 0.5);
     const Eigen::Vector3d ray = T_target_cam.rotation * *camera::unproject(camera.model, px + offset);
     const Eigen::Vector3d hit = T_target_cam.translation - T_target_cam.translation.z() / ray.z() * ray;
     const auto cell = [](const std::vector<double>& lines, double at) {

@@ -41,7 +41,7 @@ class RandomProblem : public BlockProblem {
       block.B = randomMatrix(options.num_residuals, kBlockSize);
       block.c = randomMatrix(options.num_residuals, 1);
       blocks.push_back(block);
-      b_.push_back(BlockVector::Zero());
+      b_.emplace_back(BlockVector::Zero());
     }
   }
 
