@@ -169,8 +169,9 @@ def deltille(settings):
     target.write_text("target_type: 'checkerboard'\ntargetCols: 8\ntargetRows: 11\n"
                       "rowSpacingMeters: 0.02\ncolSpacingMeters: 0.02\n")
     rows = []
+    moving = [("pinhole-equi, all rounds, moving pupil", ["--estimate-pupil-shift"])]
     for model in ["ds-none", "pinhole-equi"]:
-        for label, flags in no_rounds(model):
+        for label, flags in no_rounds(model) + (moving if model == "pinhole-equi" else []):
             name = "deltille-" + label.replace(", ", "-").replace(" ", "-")
             chain, record, seconds = calibrate(folder, folder, target, [model], ["/cam0/image_raw"], "--export-corners", *flags)
             del chain
@@ -179,7 +180,7 @@ def deltille(settings):
             halves = [WORK / f"{name}-even.csv", WORK / f"{name}-odd.csv"]
             split_by_stamp(corners, *halves, lambda index: index % 2 == 0)
             for half in halves:
-                calibrate(half.with_suffix(""), half, target, [model], ["/cam0/image_raw"])
+                calibrate(half.with_suffix(""), half, target, [model], ["/cam0/image_raw"], *[flag for flag in flags if flag == "--estimate-pupil-shift"])
             chains = [half.with_name(half.stem + "-camchain.yaml") for half in halves]
             region = ["--max-angle-deg", 180, "--corners", *halves]
             rows.append([label, f"{sum(count == 88 for count in corners_per_image(corners, used=False))} of 43",

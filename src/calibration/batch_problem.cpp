@@ -8,7 +8,9 @@ namespace tartan_calib::calibration {
 namespace {
 
 constexpr int kPoseSize = 6;
+constexpr int kPupilSize = camera::PupilShift::kNumParameters;
 constexpr int kWarpSize = 2;
+constexpr double kMaxPupilShift_m = 0.05;  ///< of each coefficient: no lens of a robot is larger
 
 bool contains(const std::vector<int>& list, int value) { return std::find(list.begin(), list.end(), value) != list.end(); }
 
@@ -49,7 +51,10 @@ camera::CameraModel withinBounds(const camera::CameraModel& model, const Eigen::
 }  // namespace
 
 SharedLayout::SharedLayout(const Rig& rig, const SolveOptions& options)
-    : extrinsics_(rig.cameras.size(), kHeld), intrinsics_(rig.cameras.size(), kHeld) {
+    : extrinsics_(rig.cameras.size(), kHeld),
+      intrinsics_(rig.cameras.size(), kHeld),
+      pupils_(rig.cameras.size(), kHeld),
+      estimates_pupils_(options.estimate_pupil_shift) {
   const int num_cameras = static_cast<int>(rig.cameras.size());
   for (int i = 1; i < num_cameras; ++i) {
     if (!options.fix_extrinsics && !contains(options.fixed_cameras, i)) {
@@ -61,6 +66,10 @@ SharedLayout::SharedLayout(const Rig& rig, const SolveOptions& options)
     if (!options.fix_intrinsics && !contains(options.fixed_cameras, i)) {
       intrinsics_[static_cast<std::size_t>(i)] = size_;
       size_ += camera::numParameters(rig.cameras[static_cast<std::size_t>(i)].camera.model);
+      if (options.estimate_pupil_shift) {
+        pupils_[static_cast<std::size_t>(i)] = size_;
+        size_ += kPupilSize;
+      }
     }
   }
   if (options.estimate_board_warp) {
@@ -108,6 +117,7 @@ std::vector<int> BatchProblem::sharedOf(const ViewMeasurements& images) const {
   for (const CameraMeasurements& image : images) {
     appendRange(layout_.extrinsics(image.camera_index), kPoseSize, shared);
     appendRange(layout_.intrinsics(image.camera_index), numParameters(image.camera_index), shared);
+    appendRange(layout_.pupil(image.camera_index), kPupilSize, shared);
   }
   appendRange(layout_.warp(), kWarpSize, shared);
   return shared;
@@ -115,7 +125,6 @@ std::vector<int> BatchProblem::sharedOf(const ViewMeasurements& images) const {
 
 solver::BlockTerms BatchProblem::linearize(int view) const {
   const std::size_t k = static_cast<std::size_t>(view);
-  const bool with_warp = layout_.warp() != SharedLayout::kHeld;
   solver::BlockTerms terms;
   terms.shared = sharedOf(views_[k]);
   const int size = static_cast<int>(terms.shared.size());
@@ -135,12 +144,16 @@ solver::BlockTerms BatchProblem::linearize(int view) const {
     const int num_parameters = numParameters(image.camera_index);
     add_part(layout_.extrinsics(image.camera_index), 0, kPoseSize);
     add_part(layout_.intrinsics(image.camera_index), kPoseSize, num_parameters);
-    if (with_warp) {
-      parts.push_back({size - kWarpSize, kPoseSize + num_parameters, kWarpSize});
+    const LocalUnknowns unknowns{layout_.pupil(image.camera_index) != SharedLayout::kHeld,
+                                 layout_.warp() != SharedLayout::kHeld};
+    add_part(layout_.pupil(image.camera_index), kPoseSize + num_parameters, kPupilSize);
+    if (unknowns.warp) {
+      const int local_at = kPoseSize + num_parameters + (unknowns.pupil ? kPupilSize : 0);
+      parts.push_back({size - kWarpSize, local_at, kWarpSize});
     }
     // T_cam_rig exp(xi) = exp(Ad(T_cam_rig) xi) T_cam_rig.
     const RigCamera& rig_camera = state_.rig.cameras[static_cast<std::size_t>(image.camera_index)];
-    addImage(linearizeBlock(residualBlock(k, image), with_warp), parts, geometry::adjoint(rig_camera.T_cam_rig), terms);
+    addImage(linearizeBlock(residualBlock(k, image), unknowns), parts, geometry::adjoint(rig_camera.T_cam_rig), terms);
   }
   return terms;
 }
@@ -156,6 +169,12 @@ solver::StepLimits BatchProblem::stepLimits() const {
     }
     const camera::CameraModel& model = state_.rig.cameras[i].camera.model;
     const Eigen::VectorXd parameters = camera::parameters(model);
+    const int pupil = layout_.pupil(static_cast<int>(i));
+    if (pupil != SharedLayout::kHeld) {
+      const Eigen::Vector2d& now_m = state_.rig.cameras[i].camera.pupil.coefficients_m;
+      limits.lower.segment<kPupilSize>(pupil) = (-now_m.array() - kMaxPupilShift_m).min(0.0);
+      limits.upper.segment<kPupilSize>(pupil) = (-now_m.array() + kMaxPupilShift_m).max(0.0);
+    }
     limits.lower.segment(at, parameters.size()) = (camera::lowerBound(model) - parameters).cwiseMin(0.0);
     limits.upper.segment(at, parameters.size()) = (camera::upperBound(model) - parameters).cwiseMax(0.0);
   }
@@ -174,6 +193,10 @@ void BatchProblem::move(const solver::Step& step) {
       camera::CameraModel& model = rig_camera.camera.model;
       const Eigen::VectorXd old = camera::parameters(model);
       model = withinBounds(model, old + step.shared.segment(intrinsics, old.size()));
+    }
+    const int pupil = layout_.pupil(static_cast<int>(i));
+    if (pupil != SharedLayout::kHeld) {
+      rig_camera.camera.pupil.coefficients_m += step.shared.segment<kPupilSize>(pupil);
     }
   }
   for (std::size_t k = 0; k < state_.T_rig_target.size(); ++k) {

@@ -22,12 +22,17 @@ class SharedLayout {
 
   int extrinsics(int camera_index) const { return extrinsics_[static_cast<std::size_t>(camera_index)]; }
   int intrinsics(int camera_index) const { return intrinsics_[static_cast<std::size_t>(camera_index)]; }
+  /// True if rows of the covariance are about pupils; those of a camera whose intrinsics are held are zero.
+  bool estimatesPupils() const { return estimates_pupils_; }
+  int pupil(int camera_index) const { return pupils_[static_cast<std::size_t>(camera_index)]; }
   int warp() const { return warp_; }
   int size() const { return size_; }
 
  private:
   std::vector<int> extrinsics_;
   std::vector<int> intrinsics_;
+  std::vector<int> pupils_;
+  bool estimates_pupils_ = false;
   int warp_ = kHeld;
   int size_ = 0;
 };

@@ -266,7 +266,8 @@ std::optional<Rigid3> estimatePose(const camera::Camera& camera, const std::vect
         if (seen.size() < kSampleSize || 2 * seen.size() < corners.size()) {
           return std::nullopt;
         }
-        return estimate(model, seen, std::hypot(camera.width, camera.height));
+        return estimate(camera::ShiftedModel<std::decay_t<decltype(model)>>{model, camera.pupil}, seen,
+                        std::hypot(camera.width, camera.height));
       },
       camera.model);
 }

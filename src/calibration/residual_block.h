@@ -44,15 +44,22 @@ struct ResidualBlock {
 /// would, so that no step gains by pushing corners out of the model's domain.
 double blockCost(const ResidualBlock& block);
 
+/// What a camera's images determine besides poses and parameters.
+struct LocalUnknowns {
+  bool pupil = false;
+  bool warp = false;
+};
+
 /// The same with first derivatives by local unknowns: xi of T_cam_target <- exp(xi) T_cam_target (6), the camera's
-/// parameters, the board's warp (2, if asked for). H = J'J and g = J'r with J and r weighted, r = predicted - measured.
+/// parameters, its pupil's shift (2) and the board's warp (2) if asked for. H = J'J and g = J'r with J and r weighted, r =
+/// predicted - measured.
 struct LocalTerms {
   double cost = 0.0;
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
 };
 
-LocalTerms linearizeBlock(const ResidualBlock& block, bool with_warp);
+LocalTerms linearizeBlock(const ResidualBlock& block, const LocalUnknowns& unknowns);
 
 /// Measured minus predicted position of every corner, used or not; empty where the model gives it no image.
 std::vector<std::optional<Eigen::Vector2d>> blockErrors(const ResidualBlock& block);

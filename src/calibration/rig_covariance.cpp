@@ -4,6 +4,7 @@ namespace tartan_calib::calibration {
 namespace {
 
 constexpr int kPoseSize = 6;
+constexpr int kPupilSize = camera::PupilShift::kNumParameters;
 constexpr int kWarpSize = 2;
 
 const camera::CameraModel& modelOf(const Rig& rig, int camera_index) {
@@ -39,7 +40,8 @@ int intrinsicsRow(const Rig& rig, int camera_index) {
 Eigen::MatrixXd baselineCovariance(const Rig& rig, const SharedLayout& layout, const Eigen::MatrixXd& shared_covariance) {
   const int num_cameras = static_cast<int>(rig.cameras.size());
   const int warp_row = intrinsicsRow(rig, num_cameras);
-  const int num_rows = warp_row + (layout.warp() != SharedLayout::kHeld ? kWarpSize : 0);
+  const int pupil_row = warp_row + (layout.warp() != SharedLayout::kHeld ? kWarpSize : 0);
+  const int num_rows = pupil_row + (layout.estimatesPupils() ? num_cameras * kPupilSize : 0);
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(num_rows, layout.size());
   for (int i = 1; i < num_cameras; ++i) {
     // exp(xi_i) T_i (exp(xi_j) T_j)^-1 = exp(xi_i - Ad(T_i_j) xi_j) T_i_j to first order, j = i - 1.
@@ -57,6 +59,9 @@ Eigen::MatrixXd baselineCovariance(const Rig& rig, const SharedLayout& layout, c
     if (layout.intrinsics(i) != SharedLayout::kHeld) {
       J.block(intrinsicsRow(rig, i), layout.intrinsics(i), size, size).setIdentity();
     }
+    if (layout.pupil(i) != SharedLayout::kHeld) {
+      J.block<kPupilSize, kPupilSize>(pupil_row + i * kPupilSize, layout.pupil(i)).setIdentity();
+    }
   }
   if (layout.warp() != SharedLayout::kHeld) {
     J.block<kWarpSize, kWarpSize>(warp_row, layout.warp()).setIdentity();
@@ -70,6 +75,10 @@ std::string unknownName(const Rig& rig, const SharedLayout& layout, int shared_i
     const int from_extrinsics = shared_index - layout.extrinsics(i);
     if (layout.extrinsics(i) != SharedLayout::kHeld && from_extrinsics >= 0 && from_extrinsics < kPoseSize) {
       return name + " extrinsics";
+    }
+    const int from_pupil = shared_index - layout.pupil(i);
+    if (layout.pupil(i) != SharedLayout::kHeld && from_pupil >= 0 && from_pupil < kPupilSize) {
+      return name + " pupil shift";
     }
     const camera::CameraModel& model = modelOf(rig, i);
     const int from_intrinsics = shared_index - layout.intrinsics(i);

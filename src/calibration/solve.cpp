@@ -249,7 +249,7 @@ std::optional<Eigen::Vector2d> residual(const Rig& rig, const geometry::Rigid3& 
                                         const Eigen::Vector2d& measured_px) {
   const RigCamera& rig_camera = rig.cameras[static_cast<std::size_t>(camera_index)];
   const std::optional<Eigen::Vector2d> predicted_px =
-      camera::project(rig_camera.camera.model, rig_camera.T_cam_rig * (T_rig_target * p_target));
+      camera::project(rig_camera.camera, rig_camera.T_cam_rig * (T_rig_target * p_target));
   return predicted_px ? std::optional<Eigen::Vector2d>(measured_px - *predicted_px) : std::nullopt;
 }
 

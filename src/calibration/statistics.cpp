@@ -22,7 +22,7 @@ void addImage(const RigCamera& rig_camera, const geometry::Rigid3& T_rig_target,
   const std::size_t before = errors.errors_px.size();
   for (const observation::Corner& corner : image.corners) {
     const Eigen::Vector3d p_cam = T_cam_target * points[static_cast<std::size_t>(corner.corner_id)];
-    const std::optional<Eigen::Vector2d> predicted_px = camera::project(rig_camera.camera.model, p_cam);
+    const std::optional<Eigen::Vector2d> predicted_px = camera::project(rig_camera.camera, p_cam);
     if (corner.used && predicted_px) {
       errors.errors_px.emplace_back(corner.px - *predicted_px);
       errors.polar_angles_rad.push_back(std::atan2(p_cam.head<2>().norm(), p_cam.z()));

@@ -129,6 +129,10 @@ std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Ve
   return px;
 }
 
+std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam) {
+  return project(camera.model, camera.pupil.isZero() ? p_cam : camera.pupil.apply(p_cam));
+}
+
 std::optional<Eigen::Vector3d> unproject(const CameraModel& model, const Eigen::Vector2d& px) {
   Eigen::Vector3d ray_cam;
   if (!std::visit([&](const auto& m) { return m.unproject(px, ray_cam); }, model)) {

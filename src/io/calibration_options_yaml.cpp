@@ -54,6 +54,7 @@ void addSolveOptions(YamlWriter& yaml, const calibration::SolveOptions& solve) {
   yaml.add("fix_extrinsics", yamlBool(solve.fix_extrinsics));
   yaml.add("fixed_cameras", yamlFlow(solve.fixed_cameras));
   yaml.add("estimate_board_warp", yamlBool(solve.estimate_board_warp));
+  yaml.add("estimate_pupil_shift", yamlBool(solve.estimate_pupil_shift));
   yaml.add("anneal_robust_loss", yamlBool(solve.anneal_robust_loss));
   yaml.add("use_blake_zisserman", yamlBool(solve.use_blake_zisserman));
   yaml.add("remove_outliers", yamlBool(solve.remove_outliers));

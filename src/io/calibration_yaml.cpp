@@ -115,6 +115,7 @@ void addCamera(YamlWriter& yaml, const CalibrationResult& result, std::size_t in
   yaml.add("resolution", yamlFlow(std::vector<int>{rig_camera.camera.width, rig_camera.camera.height}));
   yaml.add("intrinsics", yamlFlow(Eigen::VectorXd(parameters.head(num_intrinsics))));
   yaml.add("distortion_coeffs", yamlFlow(Eigen::VectorXd(parameters.tail(parameters.size() - num_intrinsics))));
+  yaml.add("pupil_shift_m", yamlFlow(Eigen::VectorXd(rig_camera.camera.pupil.coefficients_m)));
   yaml.add("T_cam_rig", poseFlow(rig_camera.T_cam_rig));
   addCounts(yaml, report, result.solution.counts[index]);
   addResiduals(yaml, report.statistics);
@@ -131,7 +132,7 @@ void addRows(YamlWriter& yaml, const std::string& key, const Eigen::MatrixXi& ma
 }
 
 /// Names of the covariance's rows.
-std::vector<std::string> covarianceNames(const calibration::Solution& solution) {
+std::vector<std::string> covarianceNames(const calibration::Solution& solution, const calibration::SolveOptions& options) {
   std::vector<std::string> names;
   const auto& cameras = solution.rig.cameras;
   for (std::size_t i = 1; i < cameras.size(); ++i) {
@@ -148,18 +149,22 @@ std::vector<std::string> covarianceNames(const calibration::Solution& solution) 
                       std::to_string(is_intrinsic ? k : k - num_intrinsics));
     }
   }
-  const auto num_warp = static_cast<std::size_t>(solution.covariance.rows()) - names.size();
-  for (std::size_t k = 0; k < num_warp; ++k) {
+  for (int k = 0; options.estimate_board_warp && k < 2; ++k) {
     names.push_back("board_warp_m." + std::to_string(k));
+  }
+  for (std::size_t i = 0; options.estimate_pupil_shift && i < cameras.size(); ++i) {
+    for (int k = 0; k < camera::PupilShift::kNumParameters; ++k) {
+      names.push_back("cam" + std::to_string(i) + ".pupil_shift_m." + std::to_string(k));
+    }
   }
   return names;
 }
 
-void addCovariance(YamlWriter& yaml, const calibration::Solution& solution) {
+void addCovariance(YamlWriter& yaml, const calibration::Solution& solution, const calibration::SolveOptions& options) {
   yaml.open("covariance");
   yaml.comment("scaled by sigma_whitened^2; rotations: R <- exp(r) R");
   const bool is_known = solution.covariance.size() > 0;
-  yaml.add("parameters", yamlFlow(is_known ? covarianceNames(solution) : std::vector<std::string>()));
+  yaml.add("parameters", yamlFlow(is_known ? covarianceNames(solution, options) : std::vector<std::string>()));
   yaml.open("matrix");
   for (Eigen::Index row = 0; row < solution.covariance.rows(); ++row) {
     yaml.item(yamlFlow(Eigen::VectorXd(solution.covariance.row(row).transpose())));
@@ -201,7 +206,7 @@ std::string calibrationText(const CalibrationResult& result, const pipeline::Cal
   addRows(yaml, "shared_views", result.graph.shared_views);
   addRows(yaml, "shared_corners", result.graph.shared_corners);
   yaml.close();
-  addCovariance(yaml, result.solution);
+  addCovariance(yaml, result.solution, options.solve);
   yaml.add("warnings", yamlFlow(result.warnings));
   addViews(yaml, result.solution);
   return yaml.text();

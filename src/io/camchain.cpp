@@ -62,6 +62,9 @@ Camchain camchain(const pipeline::CalibrationResult& result) {
     if (const std::optional<std::string> note = pipeline::hemisphereNote(result, static_cast<int>(index))) {
       chain.comments.push_back(*note);
     }
+    if (const std::optional<std::string> note = pipeline::pupilNote(result, static_cast<int>(index))) {
+      chain.comments.push_back(*note);
+    }
   }
   return chain;
 }

@@ -7,6 +7,7 @@
 #include "board_poses.h"
 #include "check_options.h"
 #include "listen.h"
+#include "pupil_hint.h"
 #include "recover_corners.h"
 #include "round_summary.h"
 #include "tartan_calib/calibration/initialize_camera.h"
@@ -244,6 +245,12 @@ CalibrationResult CalibrationRun::finish() {
   describe(result_);
   for (const std::string& warning : resultWarnings(result_)) {
     warn(warning);
+  }
+  calibration::SolveOptions options = options_.solve;
+  options.num_threads = options_.num_threads;
+  options.progress = [this](const calibration::SolveProgress& /*iteration*/) { return !isCancelled(listener_); };
+  if (const std::optional<std::string> hint = pupilHint(result_.solution, options, target_points_)) {
+    warn(*hint);
   }
   end();
   return std::move(result_);

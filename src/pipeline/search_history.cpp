@@ -13,7 +13,7 @@ constexpr double kMovedWithMissing_px = 0.1;
 
 std::optional<Eigen::Vector2d> prediction(const camera::Camera& camera, const geometry::Rigid3& T_cam_target,
                                           const Eigen::Vector3d& p_target) {
-  const auto px = camera::project(camera.model, T_cam_target * p_target);
+  const auto px = camera::project(camera, T_cam_target * p_target);
   return px && camera::isInside(camera, *px) ? px : std::nullopt;
 }
 
@@ -31,7 +31,7 @@ bool hasMoved(const SearchedImage& before, const camera::Camera& camera, const g
   const double limit_px = before.is_complete ? kMoved_px : kMovedWithMissing_px;
   return std::any_of(target_points.begin(), target_points.end(), [&](const Eigen::Vector3d& p_target) {
     const auto now_px = prediction(camera, T_cam_target, p_target);
-    const auto then_px = camera::project(before.camera.model, before.T_cam_target * p_target);
+    const auto then_px = camera::project(before.camera, before.T_cam_target * p_target);
     return now_px && (!then_px || (*now_px - *then_px).norm() > limit_px);
   });
 }

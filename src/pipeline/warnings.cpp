@@ -77,6 +77,9 @@ class CameraWarnings {
     if (const std::optional<std::string> note = hemisphereNote(result_, index_)) {
       warnings_.push_back(*note);
     }
+    if (const std::optional<std::string> note = pupilNote(result_, index_)) {
+      warnings_.push_back(*note);
+    }
     return std::move(warnings_);
   }
 
@@ -202,6 +205,18 @@ std::optional<std::string> otherSizeNote(const CameraCorners& corners, const tar
                   first, second, std::min(board->cols, board->rows), std::max(board->cols, board->rows));
   }
   return std::nullopt;
+}
+
+std::optional<std::string> pupilNote(const CalibrationResult& result, int camera_index) {
+  const auto at = static_cast<std::size_t>(camera_index);
+  const camera::Camera& camera = result.solution.rig.cameras[at].camera;
+  if (camera.pupil.isZero()) {
+    return std::nullopt;
+  }
+  const double angle_rad = result.cameras[at].statistics.max_polar_angle_rad;
+  return camName(camera_index) +
+         format(": the entrance pupil moves by %.2f mm from the axis to %.0f degrees; the model alone holds for far points",
+                1e3 * camera.pupil.at_m(angle_rad), angle_rad * kDegreesPerRadian);
 }
 
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target) {

@@ -19,7 +19,7 @@ struct SolvedImage {
 FoundCorner found(const SolvedImage& image, const observation::Corner& corner) {
   FoundCorner seen{image.view, corner.corner_id, corner.px, std::nullopt, std::nullopt, 0.0, corner.used, corner.round};
   const Eigen::Vector3d& p_target = image.target_points[static_cast<std::size_t>(corner.corner_id)];
-  if (const auto predicted_px = camera::project(image.camera.model, image.T_cam_target * p_target)) {
+  if (const auto predicted_px = camera::project(image.camera, image.T_cam_target * p_target)) {
     seen.residual_px = corner.px - *predicted_px;
   }
   if (const auto ray = camera::unproject(image.camera.model, corner.px)) {
@@ -40,7 +40,7 @@ void addMissed(const SolvedImage& image, std::vector<MissedCorner>& missed) {
   }
   for (std::size_t id = 0; id < is_found.size(); ++id) {
     const Eigen::Vector3d p_cam = image.T_cam_target * image.target_points[id];
-    const auto px = is_found[id] ? std::nullopt : camera::project(image.camera.model, p_cam);
+    const auto px = is_found[id] ? std::nullopt : camera::project(image.camera, p_cam);
     if (px && camera::isInside(image.camera, *px)) {
       missed.push_back({image.view, static_cast<int>(id), *px, polarOf(p_cam)});
     }

@@ -29,20 +29,22 @@ Problem richProblem(const std::string& model) {
     corner.cov_px2 << 1.0, shear, shear, 2.0;
   });
   problem.board_warp_m = {0.001, -0.002};
+  problem.rig.cameras[0].camera.pupil.coefficients_m = {0.01, -0.003};
   return problem;
 }
 
-TEST_P(ResidualsOfEveryModel, GradientEqualsCentralDifferencesForPosesRigIntrinsicsAndWarp) {
+TEST_P(ResidualsOfEveryModel, GradientEqualsCentralDifferencesForPosesRigIntrinsicsPupilsAndWarp) {
   constexpr double kStep = 1e-6;       // metres, radians and pixels alike: rounding and curvature both stay below
   constexpr double kTolerance = 1e-6;  // rounding of the cost over that step
   SolveOptions options;
   options.estimate_board_warp = true;
+  options.estimate_pupil_shift = true;
   for (const RobustLoss loss : {RobustLoss{RobustLoss::Kind::kLeastSquares, 1.0}, RobustLoss{RobustLoss::Kind::kCauchy, 0.7},
                                 RobustLoss{RobustLoss::Kind::kBlakeZisserman, 1.0}}) {
     const Problem problem = richProblem(GetParam());
     BatchProblem batch(problem, options);
     batch.setLosses({loss, loss});
-    EXPECT_EQ(batch.numShared(), 6 + camera::numParameters(problem.rig.cameras[0].camera.model) + 6 + 2);
+    EXPECT_EQ(batch.numShared(), 6 + camera::numParameters(problem.rig.cameras[0].camera.model) + 6 + 2 * 2 + 2);
     EXPECT_LT(test_support::gradientError(batch, kStep), kTolerance);
   }
 }
@@ -63,6 +65,7 @@ TEST_P(ResidualsOfEveryModel, NormalMatrixIsTheJacobiansSquare) {
   }
   SolveOptions options;
   options.estimate_board_warp = true;
+  options.estimate_pupil_shift = true;
   BatchProblem batch(problem, options);
   const Eigen::VectorXd diagonal = test_support::statedDerivatives(batch).diagonal;
   for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
@@ -120,7 +123,7 @@ TEST(ResidualBlock, CornersWithoutImageCostTheSameInBothEvaluations) {
   const OneCorner one;
   const ResidualBlock block{one.measurements, one.board, one.camera,
                             geometry::Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, -1.0)), RobustLoss{}};
-  const LocalTerms terms = linearizeBlock(block, true);
+  const LocalTerms terms = linearizeBlock(block, {true, true});
   EXPECT_EQ(terms.cost, blockCost(block));
   EXPECT_EQ(terms.g.norm(), 0.0);
   EXPECT_EQ(terms.H.norm(), 0.0);

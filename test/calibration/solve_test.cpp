@@ -272,5 +272,42 @@ TEST(Solve, FindsTheBoardsWarp) {
   EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
 }
 
+TEST(Solve, FindsHowThePupilMoves) {
+  const Eigen::Vector2d pupil_m(0.02, -0.004);
+  Random random(7);
+  Rig rig = rowOfCameras({"ds-none"}, random);
+  rig.cameras[0].camera.pupil.coefficients_m = pupil_m;
+  SceneOptions scene_options;
+  scene_options.num_views = 30;
+  const Scene scene = test_support::simulateScene(rig, scene_options);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  problem.rig.cameras[0].camera.pupil = {};
+
+  const Solution central = solve(problem, {});
+  EXPECT_GT(central.sigma_px, 2.0 * kNoise_px);  // no central model explains it
+  EXPECT_TRUE(central.rig.cameras[0].camera.pupil.isZero());
+
+  SolveOptions options;
+  options.estimate_pupil_shift = true;
+  const Solution solution = solve(problem, options);
+  const Eigen::Vector2d sigma_m = solution.covariance.diagonal().tail<2>().cwiseSqrt();
+  const Eigen::Vector2d error_m = solution.rig.cameras[0].camera.pupil.coefficients_m - pupil_m;
+  EXPECT_LT(sigma_m.maxCoeff(), 0.1 * pupil_m.norm());
+  EXPECT_LT(error_m.cwiseQuotient(sigma_m).cwiseAbs().maxCoeff(), kMaxNormalisedError);
+  EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
+  EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.1 * kNoise_px);
+}
+
+TEST(Solve, HoldsThePupilWithTheIntrinsics) {
+  Problem problem = noisyProblem(sceneOf({"ds-none"}, 10), kNoise_px, 5);
+  problem.rig.cameras[0].camera.pupil.coefficients_m = {0.001, 0.0};
+  SolveOptions options;
+  options.fix_intrinsics = true;
+  options.estimate_pupil_shift = true;
+  const Solution solution = solve(problem, options);
+  EXPECT_EQ(solution.rig.cameras[0].camera.pupil.coefficients_m, Eigen::Vector2d(0.001, 0.0));
+  EXPECT_EQ(solution.covariance.bottomRightCorner(2, 2).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace tartan_calib::calibration

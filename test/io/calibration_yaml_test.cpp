@@ -30,8 +30,7 @@ pipeline::CalibrationResult exampleResult() {
   return result;
 }
 
-YAML::Node parsed(const pipeline::CalibrationResult& result) {
-  pipeline::CalibrateOptions options;
+YAML::Node parsed(const pipeline::CalibrationResult& result, pipeline::CalibrateOptions options = {}) {
   options.models = {"pinhole-radtan", "pinhole-radtan"};
   options.solve.outlier_sigma = 3.5;
   options.projections.rectified = pipeline::ViewSize{1.0, 1.0, 800, 600};
@@ -96,13 +95,17 @@ TEST(CalibrationYaml, NamesEveryRowOfTheCovariance) {
   EXPECT_EQ(covariance["matrix"][5][5].as<double>(), 1.0);
 }
 
-TEST(CalibrationYaml, NamesTheBoardWarpsRows) {
+TEST(CalibrationYaml, NamesTheRowsOfTheBoardsWarpAndThePupils) {
   pipeline::CalibrationResult result = exampleResult();
-  const Eigen::Index rows = result.solution.covariance.rows() + 2;
+  const Eigen::Index rows = result.solution.covariance.rows() + 2 + 2 * 2;
   result.solution.covariance = Eigen::MatrixXd::Identity(rows, rows);
-  const YAML::Node names = parsed(result)["covariance"]["parameters"];
+  pipeline::CalibrateOptions options;
+  options.solve.estimate_board_warp = true;
+  options.solve.estimate_pupil_shift = true;
+  const YAML::Node names = parsed(result, options)["covariance"]["parameters"];
   ASSERT_EQ(names.size(), static_cast<std::size_t>(rows));
-  EXPECT_EQ(names[names.size() - 1].as<std::string>(), "board_warp_m.1");
+  EXPECT_EQ(names[names.size() - 5].as<std::string>(), "board_warp_m.1");
+  EXPECT_EQ(names[names.size() - 1].as<std::string>(), "cam1.pupil_shift_m.1");
 }
 
 TEST(CalibrationYaml, WorksWithoutCovarianceAndKeepsWarnings) {

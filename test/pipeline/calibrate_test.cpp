@@ -333,5 +333,23 @@ TEST(CountTags, CountsTagsOfWhichACornerWasSeen) {
   EXPECT_EQ(minTags(grid), 7);
 }
 
+TEST(CalibrateCorners, SaysWhereAMovingPupilExplainsTheResiduals) {
+  calibration::Rig rig{{{cameraOf("ds-none", {-0.2, 0.55, 300, 301, 379, 255}), geometry::Rigid3()}}};
+  const auto is_hint = [](const std::string& warning) {
+    return warning.find("--estimate-pupil-shift") != std::string::npos;
+  };
+  for (const double shift_m : {0.0, 0.05}) {
+    rig.cameras[0].camera.pupil.coefficients_m.x() = shift_m;
+    const std::vector<CameraCorners> corners = cornersOf(rig, 30);
+    CalibrateOptions options = optionsFor({"ds-none"});
+    const CalibrationResult central = calibrateCorners(corners, target::AprilGrid(), options);
+    EXPECT_EQ(std::count_if(central.warnings.begin(), central.warnings.end(), is_hint), shift_m > 0.0 ? 1 : 0) << shift_m;
+    options.solve.estimate_pupil_shift = true;
+    const CalibrationResult moving = calibrateCorners(corners, target::AprilGrid(), options);
+    EXPECT_EQ(std::count_if(moving.warnings.begin(), moving.warnings.end(), is_hint), 0) << shift_m;
+    EXPECT_NEAR(moving.solution.sigma_px, kNoise_px, 0.1 * kNoise_px) << shift_m;
+  }
+}
+
 }  // namespace
 }  // namespace tartan_calib::pipeline

@@ -88,7 +88,7 @@ inline observation::CameraView visibleCorners(const camera::Camera& camera,
   }
   for (std::size_t id = 0; id < target_points.size(); ++id) {
     const Eigen::Vector3d p_cam = T_cam_target * target_points[id];
-    const auto px = camera::project(camera.model, p_cam);
+    const auto px = camera::project(camera, p_cam);
     const double polar_angle_rad = std::atan2(p_cam.head<2>().norm(), p_cam.z());
     if (px && camera::isInside(camera, *px) && polar_angle_rad <= max_polar_angle_rad) {
       view.corners.push_back({static_cast<int>(id), *px});

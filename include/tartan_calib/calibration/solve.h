@@ -45,6 +45,7 @@ struct SolveOptions {
   bool fix_extrinsics = false;
   std::vector<int> fixed_cameras;  ///< indices of cameras of which neither intrinsics nor extrinsics change
   bool estimate_board_warp = false;
+  bool estimate_pupil_shift = false;  ///< camera::PupilShift of every camera whose intrinsics are not fixed
 
   bool anneal_robust_loss = true;    ///< Cauchy of falling width before the final least squares
   bool use_blake_zisserman = false;  ///< Kalibr's --use-blakezisserman weights in the final solve
@@ -88,9 +89,9 @@ struct Solution {
   double sigma_whitened = 0.0;  ///< the same of residuals over Corner::cov_px2 and the model errors
 
   /// Covariance of [for each camera >= 1 its baseline T_i_(i-1): rotation 3 (rad, R <- exp(phi) R), translation 3 (m); for
-  /// each camera its parameters in Kalibr's order; board warp 2 where estimated], scaled by sigma_whitened^2. Fixed
-  /// parameters and those at their bound have zero rows. Directions that the views do not determine are left out
-  /// (pseudo-inverse); `undetermined` names the parameters that they and the bounds concern.
+  /// each camera its parameters in Kalibr's order; board warp 2 where estimated; each camera its pupil 2 where estimated],
+  /// scaled by sigma_whitened^2. Fixed parameters and those at their bound have zero rows. Directions that the views do not
+  /// determine are left out (pseudo-inverse); `undetermined` names the parameters that they and the bounds concern.
   Eigen::MatrixXd covariance;
   std::vector<std::string> undetermined;
 };

@@ -12,6 +12,7 @@
 #include "tartan_calib/camera/fov.h"
 #include "tartan_calib/camera/omni.h"
 #include "tartan_calib/camera/pinhole.h"
+#include "tartan_calib/camera/pupil_shift.h"
 
 namespace tartan_calib::camera {
 
@@ -19,12 +20,14 @@ namespace tartan_calib::camera {
 using CameraModel =
     std::variant<PinholeNone, PinholeRadtan, PinholeEqui, PinholeFov, OmniNone, OmniRadtan, Eucm, DoubleSphere>;
 
-/// A lens model with its parameters, and the size of the images it belongs to. Functions below look the model up for every
+/// A lens model with its parameters, and the size of the images it belongs to. The pupil stays in place unless a solve was
+/// asked to move it; files of camchains do not know it. Functions below look the model up for every
 /// call; loops over many points use `std::visit` on `model` once, outside.
 struct Camera {
   CameraModel model;
   int width = 0;
   int height = 0;
+  PupilShift pupil = {};
 };
 
 /// Names on the command line (`ds-none`), in the variant's order.
@@ -58,6 +61,9 @@ Eigen::VectorXd upperBound(const CameraModel& model);
 
 /// Pixel of a point in the camera frame; empty where the model gives it no image. May lie outside of the image.
 std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Vector3d& p_cam);
+
+/// The same through the camera's moving pupil, for points at a finite distance [m].
+std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam);
 
 /// Unit ray of a pixel in the camera frame; empty where the model has none.
 std::optional<Eigen::Vector3d> unproject(const CameraModel& model, const Eigen::Vector2d& px);

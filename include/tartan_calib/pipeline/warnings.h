@@ -14,6 +14,9 @@ std::optional<std::string> hemisphereNote(const CalibrationResult& result, int c
 /// Says so where clearly more images show a board of another size than one of the target's.
 std::optional<std::string> otherSizeNote(const CameraCorners& corners, const target::Target& target);
 
+/// Says so where the pupil of the camera was fitted: the model alone then holds for far points.
+std::optional<std::string> pupilNote(const CalibrationResult& result, int camera_index);
+
 /// About images and tags of one camera: skipped images, dropped tags, a border of another width.
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target);
 

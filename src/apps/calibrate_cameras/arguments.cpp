@@ -110,6 +110,7 @@ pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
   solve.final_filtering = !flags.has("no-final-filtering");
   solve.use_blake_zisserman = flags.has("use-blakezisserman");
   solve.estimate_board_warp = flags.has("estimate-board-warp");
+  solve.estimate_pupil_shift = flags.has("estimate-pupil-shift");
   solve.min_views_outlier = flags.get("min-views-outlier", solve.min_views_outlier);
   if (solve.min_views_outlier < 1) {
     throw UsageError("--min-views-outlier must be a positive integer");

@@ -29,16 +29,30 @@ po::options_description kalibrOptions() {
 po::options_description ownOptions() {
   const auto columns = [] { return po::value<std::vector<double>>()->multitoken()->composing(); };
   po::options_description options;
-  options.add_options()("init", po::value<std::string>(), "")("fix", po::value<Words>()->multitoken()->composing(), "")(
-      "estimate-board-warp", "")("linear-solver", po::value<std::string>(), "")("threads", po::value<int>(), "")(
-      "export-corners", "")("corners", po::value<std::string>(), "")("no-report", "")("max-rounds", po::value<int>(), "")(
-      "min-tags", po::value<int>(), "")("min-border-distance", po::value<double>(), "")(
-      "corner-filter", po::value<std::string>(), "")("correction-threshold", po::value<double>(), "")(
-      "projections", po::value<Words>()->multitoken(), "")("fovs", columns(), "")("poses", columns(), "")("resolutions",
-                                                                                                          columns(), "");
-  options.add_options()("refinement", po::value<std::string>(), "")("symmetry-window", po::value<double>(), "")(
-      "window-scale", po::value<double>(), "")("min-resize-window-size", po::value<int>(), "")("max-resize-window-size",
-                                                                                               po::value<int>(), "");
+  auto add = options.add_options();
+  add("init", po::value<std::string>(), "");
+  add("fix", po::value<Words>()->multitoken()->composing(), "");
+  add("estimate-board-warp", "");
+  add("estimate-pupil-shift", "");
+  add("linear-solver", po::value<std::string>(), "");
+  add("threads", po::value<int>(), "");
+  add("export-corners", "");
+  add("corners", po::value<std::string>(), "");
+  add("no-report", "");
+  add("max-rounds", po::value<int>(), "");
+  add("min-tags", po::value<int>(), "");
+  add("min-border-distance", po::value<double>(), "");
+  add("corner-filter", po::value<std::string>(), "");
+  add("correction-threshold", po::value<double>(), "");
+  add("projections", po::value<Words>()->multitoken(), "");
+  add("fovs", columns(), "");
+  add("poses", columns(), "");
+  add("resolutions", columns(), "");
+  add("refinement", po::value<std::string>(), "");
+  add("symmetry-window", po::value<double>(), "");
+  add("window-scale", po::value<double>(), "");
+  add("min-resize-window-size", po::value<int>(), "");
+  add("max-resize-window-size", po::value<int>(), "");
   return options;
 }
 

@@ -51,6 +51,7 @@ Corners
 
 Solver
   --estimate-board-warp     also fit the curvature of the board
+  --estimate-pupil-shift    also fit how the lens' entrance pupil moves: for boards within decimetres of a wide lens
   --no-outliers-removal     keep all corners
   --no-final-filtering      no last pass of outlier removal over all views
   --min-views-outlier N     remove outliers only with more than N views per camera (20)

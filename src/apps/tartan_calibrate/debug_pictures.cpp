@@ -159,7 +159,7 @@ class CameraPictures {
     cv::Mat picture = colourImage(gray);
     const auto pose = T_cam_target_.find(seen.stamp_ns);
     for (const Eigen::Vector3d& point : target_points_) {
-      const auto px = pose == T_cam_target_.end() ? std::nullopt : camera::project(camera_.model, pose->second * point);
+      const auto px = pose == T_cam_target_.end() ? std::nullopt : camera::project(camera_, pose->second * point);
       if (px && camera::isInside(camera_, *px)) {
         cv::drawMarker(picture, pointOf(*px), kPredicted, cv::MARKER_CROSS, 5, 1);
       }
