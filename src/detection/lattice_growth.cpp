@@ -20,7 +20,7 @@ constexpr std::size_t kMaxCandidates = 3;
 constexpr double kMaxGrowth_ratio = 3.0;
 
 // Between a saddle and where the corners around say that it is, in units of the shorter side of a square.
-constexpr double kMaxDeviation_squares = 0.25;
+constexpr double kMaxDeviationSquares = 0.25;
 constexpr double kMinArmCosine = 0.9;  // 26 degrees, an arm's error and the map's
 
 /// The clockwise directions: next column, next row, previous column, previous row.
@@ -201,7 +201,7 @@ class LatticeGrower {
   /// True if a saddle is where a map says and its arms lead where the map's axes do.
   bool fits(const Node& node, const LatticeMap& map) const {
     const Eigen::Vector2d deviation_px = saddle(node.saddle_index).px - map.centre_px();
-    if (deviation_px.norm() > kMaxDeviation_squares * map.minSpacing_px()) {
+    if (deviation_px.norm() > kMaxDeviationSquares * map.minSpacing_px()) {
       return false;
     }
     for (int direction = 0; direction < 4; ++direction) {

@@ -8,7 +8,7 @@
 namespace tartan_calib::detection {
 namespace {
 
-constexpr std::array<double, 3> kBlurSigmas_cells = {0.4, 0.7, 1.1};
+constexpr std::array<double, 3> kBlurSigmasInCells = {0.4, 0.7, 1.1};
 constexpr double kMinSpread = 0.15;  ///< rms of cells about their mean, where ink is -1 and paper 1: less is no payload
 
 double meanOf(const std::vector<double>& values) {
@@ -62,7 +62,7 @@ PayloadPatterns::PayloadPatterns(const target::TagFamily& family, int first_id, 
     : payload_cells_(family.payload_cells) {
   for (int tag = 0; tag < num_tags; ++tag) {
     std::vector<std::vector<double>> blurs;
-    for (const double sigma_cells : kBlurSigmas_cells) {
+    for (const double sigma_cells : kBlurSigmasInCells) {
       blurs.push_back(blurredCells(family, first_id + tag, sigma_cells));
     }
     patterns_.push_back(std::move(blurs));

@@ -53,7 +53,7 @@ std::optional<XCornerTemplate> xCornerTemplate(const BoardMap& map, const Eigen:
       if (!px) {
         return std::nullopt;
       }
-      corner.offsets_px.push_back(*px - *centre);
+      corner.offsets_px.emplace_back(*px - *centre);
       corner.pattern.push_back(-dark_diagonal * softSign(offset_m.x(), edge_x_m) * softSign(offset_m.y(), edge_y_m));
     }
   }
@@ -90,7 +90,7 @@ std::optional<XCornerMatch> matchXCorner(const cv::Mat& gray, const XCornerTempl
 }
 
 std::optional<XCornerMatch> searchXCorner(const cv::Mat& gray, const XCornerTemplate& corner, double radius_px) {
-  const auto inRadius = [&](const Eigen::Vector2d& px) { return (px - corner.px).norm() <= radius_px; };
+  const auto in_radius = [&](const Eigen::Vector2d& px) { return (px - corner.px).norm() <= radius_px; };
   std::optional<XCornerMatch> best;
   const auto consider = [&](const Eigen::Vector2d& px) {
     const auto match = matchXCorner(gray, corner, px);
@@ -98,12 +98,12 @@ std::optional<XCornerMatch> searchXCorner(const cv::Mat& gray, const XCornerTemp
       best = match;
     }
   };
-  const auto considerAround = [&](double step_px) {
+  const auto consider_around = [&](double step_px) {
     const Eigen::Vector2d centre = best ? best->px : corner.px;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const Eigen::Vector2d px = centre + step_px * Eigen::Vector2d(dx, dy);
-        if ((dx != 0 || dy != 0) && inRadius(px)) {
+        if ((dx != 0 || dy != 0) && in_radius(px)) {
           consider(px);
         }
       }
@@ -112,20 +112,20 @@ std::optional<XCornerMatch> searchXCorner(const cv::Mat& gray, const XCornerTemp
   consider(corner.px);
   for (double before = -2.0; best && best->correlation > before;) {  // uphill
     before = best->correlation;
-    considerAround(1.0);
+    consider_around(1.0);
   }
   if (!best || best->correlation < kCertainCorrelation) {
     const int reach = static_cast<int>(std::ceil(radius_px));
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
         const Eigen::Vector2d px = corner.px + Eigen::Vector2d(dx, dy);
-        if (inRadius(px)) {
+        if (in_radius(px)) {
           consider(px);
         }
       }
     }
   }
-  considerAround(kFineStep_px);
+  consider_around(kFineStep_px);
   return best;
 }
 

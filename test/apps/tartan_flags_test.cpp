@@ -71,6 +71,22 @@ TEST(TartanFlags, TakeTheCorrectionThresholdInSquaredPixels) {
   EXPECT_TRUE(contains(usageError({"--correction-threshold", "near"}), "needs a number, not 'near'"));
 }
 
+TEST(TartanFlags, LimitsOfWindowsChooseAdaptiveRefinementUnlessSymmetryIsAskedFor) {
+  const Words limits = {"--min-resize-window-size", "3", "--max_resize_window_size=6"};
+  const auto adaptive = argumentsOf(limits).calibrate.recovery;
+  EXPECT_EQ(adaptive.refinement, detection::Refinement::kAdaptive);
+  EXPECT_EQ(adaptive.adaptive_window.min_half_window_px, 3);
+  EXPECT_EQ(adaptive.adaptive_window.max_half_window_px, 6);
+  EXPECT_EQ(argumentsOf({"--symmetry-refinement"}).calibrate.recovery.refinement, detection::Refinement::kSymmetry);
+  for (const bool first : {true, false}) {
+    Words both = limits;
+    both.insert(first ? both.begin() : both.end(), "--symmetry-refinement");
+    EXPECT_EQ(argumentsOf(both).calibrate.recovery.refinement, detection::Refinement::kSymmetry);
+    EXPECT_EQ(translateTartanFlags(both).notes.size(), 2U);
+  }
+  EXPECT_TRUE(contains(usageError({"--min-resize-window-size", "small"}), "needs a number, not 'small'"));
+}
+
 TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
   for (const Words& words : {Words{"--min-init-corners-autocomplete", "24"}, Words{"--min-tag-size-autocomplete", "0"},
                              Words{"--refine-magnitude-reject", "2.0"}, Words{"--symmetry-edge-threshold", "10"},
@@ -84,13 +100,13 @@ TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
 }
 
 TEST(TartanFlags, TellThatTheDefaultViewLooksSideways) {
-  const auto isTold = [](const Words& words) {
+  const auto is_told = [](const Words& words) {
     const TartanCommand command = translateTartanFlags(words);
     return !command.notes.empty() && contains(command.notes.back(), "-y axis");
   };
-  EXPECT_TRUE(isTold({"--projections", "pinhole"}));
-  EXPECT_FALSE(isTold({"--projections", "pinhole", "--poses", "0", "--poses", "0"}));
-  EXPECT_FALSE(isTold({"--projections", "cube"}));
+  EXPECT_TRUE(is_told({"--projections", "pinhole"}));
+  EXPECT_FALSE(is_told({"--projections", "pinhole", "--poses", "0", "--poses", "0"}));
+  EXPECT_FALSE(is_told({"--projections", "cube"}));
 }
 
 TEST(TartanFlags, NameWhatIsWrong) {

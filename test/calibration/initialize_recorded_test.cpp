@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3d> readBoard(const std::filesystem::path& file) {
   std::vector<Eigen::Vector3d> points;
   while (std::getline(stream, line)) {
     const std::vector<double> numbers = numbersOf(line);
-    points.push_back(kCentimetre_m * Eigen::Vector3d(numbers.at(3), numbers.at(4), numbers.at(5)));
+    points.emplace_back(kCentimetre_m * Eigen::Vector3d(numbers.at(3), numbers.at(4), numbers.at(5)));
   }
   return points;
 }

@@ -103,6 +103,38 @@ void applyDebugModes(const Words& values, TartanCommand& command) {
   }
 }
 
+/// A limit of the adaptive windows, in whole pixels.
+TartanFlag resizedWindow(const char* flag) {
+  const auto apply = [flag](const Words& values, TartanCommand& command) {
+    const long size_px = std::lround(number(flag, values));
+    command.words.insert(command.words.end(), {"--" + std::string(flag), std::to_string(size_px)});
+  };
+  return {flag, 1, apply};
+}
+
+/// Limits of adaptive windows ask for these; where symmetry was asked for as well, they mean nothing.
+void chooseRefinement(TartanCommand& command) {
+  Words& words = command.words;
+  const auto is_limit = [](const std::string& word) {
+    return word == "--min-resize-window-size" || word == "--max-resize-window-size";
+  };
+  if (std::none_of(words.begin(), words.end(), is_limit)) {
+    return;
+  }
+  if (!contains(words, "--refinement")) {
+    words.insert(words.end(), {"--refinement", "adaptive"});
+    command.notes.emplace_back(
+        "limits of windows choose adaptive refinement; without them corners are refined by symmetry, which is more "
+        "accurate");
+  } else if (contains(words, "symmetry")) {
+    for (auto limit = std::find_if(words.begin(), words.end(), is_limit); limit != words.end();
+         limit = std::find_if(words.begin(), words.end(), is_limit)) {
+      command.notes.push_back(*limit + " has no effect: symmetry is judged in a window on the board");
+      words.erase(limit, limit + 2);
+    }
+  }
+}
+
 /// Every flag that TartanCalib has and calibrate_cameras has not, or not with this meaning.
 const std::vector<TartanFlag>& tartanFlags() {
   const std::string every_view = "every view takes part, weighted by the uncertainty of its corners";
@@ -118,9 +150,12 @@ const std::vector<TartanFlag>& tartanFlags() {
       withoutEffect("min-tag-size-autocomplete", Value::kNumber,
                     "corners are looked for where the nearest other one is at least 4 px away"),
       {"correction-threshold", 1, applyCorrectionThreshold},
-      withoutEffect("min-resize-window-size", Value::kNumber, "corners are refined by symmetry, in a window on the board"),
-      withoutEffect("max-resize-window-size", Value::kNumber, "corners are refined by symmetry, in a window on the board"),
-      withoutEffect("symmetry-refinement", Value::kNone, "corners are refined by symmetry anyway"),
+      resizedWindow("min-resize-window-size"),
+      resizedWindow("max-resize-window-size"),
+      {"symmetry-refinement", 0,
+       [](const Words& /*none*/, TartanCommand& command) {
+         command.words.insert(command.words.end(), {"--refinement", "symmetry"});
+       }},
       withoutEffect("refine-magnitude-reject", Value::kNumber,
                     "refinement ends 1.5 px from its start, and corners must agree with their neighbours"),
       withoutEffect("symmetry-edge-threshold", Value::kNumber,
@@ -197,6 +232,7 @@ TartanCommand translateTartanFlags(const Words& words) {
     flag->apply(values, command);
     i += values.size();
   }
+  chooseRefinement(command);
   if (contains(command.words, "pinhole") && !contains(command.words, "--poses")) {
     command.notes.emplace_back(
         "without --poses the view of --projections pinhole looks along the camera's -y axis, as in TartanCalib; ahead is "
