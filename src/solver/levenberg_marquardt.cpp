@@ -57,11 +57,9 @@ class Minimizer {
 
   void iterate() {
     const std::optional<Candidate> candidate = propose(equations_);
-    if (!candidate) {
-      reject();
-    } else if (candidate->promised <= tolerance()) {
+    if (candidate && candidate->promised <= tolerance()) {
       tryUndamped();
-    } else if (!tryStep(*candidate)) {
+    } else if (!candidate || !tryStep(*candidate)) {
       reject();
     }
   }

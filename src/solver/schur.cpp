@@ -12,9 +12,9 @@ namespace {
 Eigen::Index numTouched(const BlockTerms& block) { return static_cast<Eigen::Index>(block.shared.size()); }
 
 void subtractEliminated(const BlockTerms& block, const BlockMatrix& inverse, ReducedSystem& sum) {
-  const BlockRows inverse_H_bs = inverse * block.H_bs;
-  const Eigen::MatrixXd eliminated = block.H_bs.transpose() * inverse_H_bs;
-  const Eigen::VectorXd eliminated_g = inverse_H_bs.transpose() * block.g_b;
+  const BlockRows inverse_times_bs = inverse * block.H_bs;
+  const Eigen::MatrixXd eliminated = block.H_bs.transpose() * inverse_times_bs;
+  const Eigen::VectorXd eliminated_g = inverse_times_bs.transpose() * block.g_b;
   for (Eigen::Index col = 0; col < numTouched(block); ++col) {
     const int shared_col = block.shared[static_cast<std::size_t>(col)];
     sum.g(shared_col) -= eliminated_g(col);

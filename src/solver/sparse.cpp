@@ -24,9 +24,9 @@ class Cholmod {
 
   cholmod_common* get() { return &common_; }
 
-  template <typename T, int (*Free)(T**, cholmod_common*)>
+  template <typename T, int (*kFree)(T**, cholmod_common*)>
   auto own(T* raw) {
-    const auto release = [this](T* p) { Free(&p, &common_); };
+    const auto release = [this](T* p) { kFree(&p, &common_); };
     return std::unique_ptr<T, decltype(release)>(raw, release);
   }
 
