@@ -146,8 +146,10 @@ void forPlacesWithinAPixel(CrossedEdges edges,
   const Eigen::Matrix2d J_px_board = edges.J_px_board;
   constexpr int kPlaces = 10;
   for (int k = 0; k < 4 * kPlaces * kPlaces; ++k) {
-    edges.centre_px = Eigen::Vector2d(40.0 + 0.1 * (k % kPlaces), 40.0 + 0.1 * (k / kPlaces % kPlaces));
-    edges.J_px_board = Eigen::Rotation2Dd(0.3 * (k / (kPlaces * kPlaces))).toRotationMatrix() * J_px_board;
+    const int row = k / kPlaces;
+    edges.centre_px = Eigen::Vector2d(40.0 + 0.1 * (k % kPlaces), 40.0 + 0.1 * (row % kPlaces));
+    const int direction = k / (kPlaces * kPlaces);
+    edges.J_px_board = Eigen::Rotation2Dd(0.3 * direction).toRotationMatrix() * J_px_board;
     const auto refined =
         refineBySymmetry(edges.draw(random), edges.centre_px + Eigen::Vector2d(0.2, -0.15), edges.map(), {});
     ASSERT_TRUE(refined);

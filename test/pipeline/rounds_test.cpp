@@ -81,7 +81,8 @@ TEST(RoundsTest, CornersThatAreNotFoundAgainAreKeptWhereTheyFit) {
 TEST(RoundsTest, CornersKnowTheRoundThatSawThemFirst) {
   const auto count = [](const CalibrationResult& result, int round) {
     int corners = 0;
-    for (const observation::CameraView& image : observedCorners(result).front().images) {
+    const std::vector<CameraCorners> observed = observedCorners(result);
+    for (const observation::CameraView& image : observed.front().images) {
       corners += static_cast<int>(std::count_if(image.corners.begin(), image.corners.end(),
                                                 [round](const auto& corner) { return corner.round == round; }));
     }

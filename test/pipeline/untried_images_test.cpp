@@ -125,7 +125,8 @@ CalibrationResult run(int max_rounds) {
 
 /// Corners of an image that the solve used; -1 where nothing was seen in it.
 int usedCorners(const CalibrationResult& result, std::size_t camera, std::size_t frame) {
-  for (const observation::CameraView& image : observedCorners(result)[camera].images) {
+  const std::vector<CameraCorners> observed = observedCorners(result);
+  for (const observation::CameraView& image : observed[camera].images) {
     if (image.stamp_ns == recording().images[camera][frame].stamp_ns) {
       return static_cast<int>(std::count_if(image.corners.begin(), image.corners.end(),
                                             [](const observation::Corner& corner) { return corner.used; }));

@@ -234,7 +234,8 @@ TEST(Renderer, saysHowFarCornersMoveDuringTheExposure) {
   }
   EXPECT_GE(num_compared, 20);
   frame.motion.setZero();
-  for (const TrueCorner& corner : Renderer(scene).render(0).views[0].corners) {
+  const auto still = Renderer(scene).render(0).views[0].corners;
+  for (const TrueCorner& corner : still) {
     EXPECT_EQ(corner.motion_px, 0.0);
   }
 }
