@@ -8,6 +8,7 @@
 #include "tartan_calib/calibration/camera_graph.h"
 #include "tartan_calib/calibration/pose.h"
 #include "tartan_calib/error.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 using geometry::Rigid3;
 using observation::CameraView;
 using observation::View;
-
-std::string cameraName(int camera_index) { return "cam" + std::to_string(camera_index); }
 
 std::string groupNames(const std::vector<std::vector<int>>& groups) {
   std::string text;

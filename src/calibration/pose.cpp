@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "robust.h"
+#include "tartan_calib/median.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -85,7 +86,7 @@ double medianAngularError(const std::vector<Sighting>& sightings, const Rigid3& 
     const Eigen::Vector3d p_cam = R * s.p_target + T_cam_target.translation;
     buffer.push_back(s.px_per_rad * (p_cam.normalized() - s.ray).norm());
   }
-  return median(buffer);
+  return upperMedian(buffer);
 }
 
 /// Least median of squares over samples of four.
@@ -127,7 +128,7 @@ double medianError(const Model& model, const std::vector<Sighting>& sightings, c
     Eigen::Vector2d px;
     errors_px.push_back(model.project(T_cam_target * s.p_target, px) ? (px - s.px).norm() : kInfinity);
   }
-  return median(errors_px);
+  return upperMedian(errors_px);
 }
 
 /// Sum of Cauchy's loss of `scale_px`; corners without an image cost as much as one 10 scales off.

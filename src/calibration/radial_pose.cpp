@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "robust.h"
+#include "tartan_calib/median.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -56,7 +57,7 @@ double medianError(const RadialHomography& H, const Eigen::Vector2d& centre, con
   for (const NormalCorner& corner : view) {
     buffer.push_back(radialError(H, centre, corner));
   }
-  return median(buffer);
+  return upperMedian(buffer);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "robust.h"
 #include "spread.h"
+#include "tartan_calib/median.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -59,7 +60,7 @@ Explanation explain(const RadialProfile& profile, const Samples& samples) {
   for (const RadialSample& s : samples) {
     errors.push_back(radialErrorOf(profile, s, s.depth + result.t_z));
   }
-  result.error = median(errors);
+  result.error = upperMedian(errors);
   return result;
 }
 
@@ -200,7 +201,7 @@ std::optional<ProfileView> profileView(const NormalView& view, const Eigen::Vect
     errors.push_back(radialError(H, centre, corner));
   }
   constexpr double kMinLimit = 5e-3;
-  const double limit = std::max(4.0 * median(errors), kMinLimit);
+  const double limit = std::max(4.0 * upperMedian(errors), kMinLimit);
   const std::array<RadialPose, 2> poses = completeRotation(H);
   ProfileView result;
   for (const NormalCorner& corner : corners) {

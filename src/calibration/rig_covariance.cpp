@@ -1,5 +1,7 @@
 #include "rig_covariance.h"
 
+#include "tartan_calib/text.h"
+
 namespace tartan_calib::calibration {
 namespace {
 
@@ -71,7 +73,7 @@ Eigen::MatrixXd baselineCovariance(const Rig& rig, const SharedLayout& layout, c
 
 std::string unknownName(const Rig& rig, const SharedLayout& layout, int shared_index) {
   for (int i = 0; i < static_cast<int>(rig.cameras.size()); ++i) {
-    const std::string name = "cam" + std::to_string(i);
+    const std::string name = cameraName(i);
     const int from_extrinsics = shared_index - layout.extrinsics(i);
     if (layout.extrinsics(i) != SharedLayout::kHeld && from_extrinsics >= 0 && from_extrinsics < kPoseSize) {
       return name + " extrinsics";

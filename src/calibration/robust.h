@@ -14,13 +14,6 @@ inline double cauchyWeight(double residual, double scale) {
   return 1.0 / (1.0 + ratio * ratio);
 }
 
-/// Upper median. Reorders `values`, which must not be empty.
-inline double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Minimises sum w_i |v_i - x| over x. Reorders `value_weights`, which must not be empty; weights are not negative.
 inline double weightedMedian(std::vector<std::pair<double, double>>& value_weights) {
   std::sort(value_weights.begin(), value_weights.end());

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "median.h"
 #include "shift_field.h"
+#include "tartan_calib/median.h"
 
 namespace tartan_calib::detection {
 namespace {
@@ -45,7 +45,7 @@ void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::Apr
       contrasts.push_back(candidates[i].match->contrast);
     }
   }
-  const double least_contrast = contrasts.empty() ? 0.0 : kMinContrastShare * median(contrasts);
+  const double least_contrast = contrasts.empty() ? 0.0 : kMinContrastShare * upperMedian(contrasts);
   std::vector<std::size_t> unconfirmed;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const CornerCandidate& candidate = candidates[i];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "median.h"
+#include "tartan_calib/median.h"
 
 namespace tartan_calib::detection {
 namespace {
@@ -29,7 +29,7 @@ std::optional<Eigen::Vector2d> neighbourShift(const std::vector<CornerCandidate>
   if (x.size() < kMinNeighbours) {
     return std::nullopt;
   }
-  return Eigen::Vector2d(median(x), median(y));
+  return Eigen::Vector2d(upperMedian(x), upperMedian(y));
 }
 
 void dropDeviating(double max_deviation_px, std::vector<CornerCandidate>& candidates) {

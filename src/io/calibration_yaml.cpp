@@ -1,4 +1,5 @@
 #include "tartan_calib/io/calibration_yaml.h"
+#include "tartan_calib/text.h"
 
 #include "calibration_options_yaml.h"
 #include "number_text.h"
@@ -109,7 +110,7 @@ void addCamera(YamlWriter& yaml, const CalibrationResult& result, std::size_t in
   const pipeline::CameraReport& report = result.cameras[index];
   const Eigen::VectorXd parameters = camera::parameters(rig_camera.camera.model);
   const Eigen::Index num_intrinsics = camera::numIntrinsics(rig_camera.camera.model);
-  yaml.open("cam" + std::to_string(index));
+  yaml.open(cameraName(index));
   yaml.add("topic", yamlString(report.topic));
   yaml.add("model", camera::modelName(rig_camera.camera.model));
   yaml.add("resolution", yamlFlow(std::vector<int>{rig_camera.camera.width, rig_camera.camera.height}));
@@ -145,7 +146,7 @@ std::vector<std::string> covarianceNames(const calibration::Solution& solution, 
     const int num_intrinsics = camera::numIntrinsics(cameras[i].camera.model);
     for (int k = 0; k < camera::numParameters(cameras[i].camera.model); ++k) {
       const bool is_intrinsic = k < num_intrinsics;
-      names.push_back("cam" + std::to_string(i) + (is_intrinsic ? ".intrinsics." : ".distortion_coeffs.") +
+      names.push_back(cameraName(i) + (is_intrinsic ? ".intrinsics." : ".distortion_coeffs.") +
                       std::to_string(is_intrinsic ? k : k - num_intrinsics));
     }
   }
@@ -154,7 +155,7 @@ std::vector<std::string> covarianceNames(const calibration::Solution& solution, 
   }
   for (std::size_t i = 0; options.estimate_pupil_shift && i < cameras.size(); ++i) {
     for (int k = 0; k < camera::PupilShift::kNumParameters; ++k) {
-      names.push_back("cam" + std::to_string(i) + ".pupil_shift_m." + std::to_string(k));
+      names.push_back(cameraName(i) + ".pupil_shift_m." + std::to_string(k));
     }
   }
   return names;

@@ -5,6 +5,7 @@
 #include "number_text.h"
 #include "tartan_calib/camera/camera.h"
 #include "tartan_calib/pipeline/warnings.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::io {
 namespace {
@@ -29,7 +30,7 @@ std::string cameraText(const Camchain& chain, std::size_t index) {
   const camera::CameraModel& model = rig_camera.camera.model;
   const Eigen::VectorXd parameters = camera::parameters(model);
   const Eigen::Index num_intrinsics = camera::numIntrinsics(model);
-  std::string text = "cam" + std::to_string(index) + ":\n";
+  std::string text = cameraName(index) + ":\n";
   if (index > 0) {
     const geometry::Rigid3 T_cn_cnm1 = rig_camera.T_cam_rig * chain.rig.cameras[index - 1].T_cam_rig.inverse();
     text += std::string(kIndent) + "T_cn_cnm1:\n" + matrixRows(T_cn_cnm1.matrix());
@@ -76,7 +77,7 @@ std::string camchainText(const Camchain& chain) {
   }
   std::map<std::string, std::size_t> sorted;  // as strings: cam0, cam1, cam10, cam2
   for (std::size_t index = 0; index < chain.rig.cameras.size(); ++index) {
-    sorted["cam" + std::to_string(index)] = index;
+    sorted[cameraName(index)] = index;
   }
   for (const auto& [name, index] : sorted) {
     text += cameraText(chain, index);

@@ -5,6 +5,7 @@
 #include "read_file.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/camchain.h"
+#include "tartan_calib/text.h"
 #include "yaml_reader.h"
 
 namespace tartan_calib::io {
@@ -139,7 +140,7 @@ Camchain parseCamchain(const std::string& text, const std::string& name) {
   const YAML::Node cameras = parseYamlMap(text, name);
   Camchain chain;
   for (std::size_t index = 0; index < cameras.size(); ++index) {
-    const std::string camera = "cam" + std::to_string(index);
+    const std::string camera = cameraName(index);
     const YAML::Node node = cameras[camera];
     if (!node.IsDefined()) {
       throw InputError(name + ": expected " + std::to_string(cameras.size()) + " cameras named cam0, cam1, ...; " + camera +

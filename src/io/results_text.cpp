@@ -1,4 +1,5 @@
 #include "tartan_calib/io/results_text.h"
+#include "tartan_calib/text.h"
 
 #include <cmath>
 #include <limits>
@@ -51,7 +52,7 @@ std::string cameraBlock(const CalibrationResult& result, int index) {
       stdevs(result.solution, calibration::intrinsicsRow(result.solution.rig, index), parameters.size());
   const Eigen::Index num_intrinsics = camera::numIntrinsics(model);
   const Eigen::Index num_distortion = parameters.size() - num_intrinsics;
-  std::string text = "cam" + std::to_string(index) + " (" + result.cameras[at].topic + "):\n";
+  std::string text = cameraName(index) + " (" + result.cameras[at].topic + "):\n";
   text += "    type: " + kalibrClass(model) + "\n";
   text += "    distortion: " + withStdev(parameters.tail(num_distortion), stdev.tail(num_distortion));
   text += "    projection: " + withStdev(parameters.head(num_intrinsics), stdev.head(num_intrinsics));

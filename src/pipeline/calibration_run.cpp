@@ -14,6 +14,7 @@
 #include "tartan_calib/calibration/initialize_rig.h"
 #include "tartan_calib/calibration/synchronize.h"
 #include "tartan_calib/pipeline/warnings.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -140,7 +141,7 @@ void CalibrationRun::addCamera(const CameraCorners& corners, std::optional<doubl
     usable_.push_back(usableImages(corners, index));
     const calibration::CameraStart start = calibration::initializeCamera(spec, target_points_, usable_.back());
     for (const std::string& warning : start.warnings) {
-      warn("cam" + std::to_string(index) + ": " + warning);
+      warn(cameraName(index) + ": " + warning);
     }
     started_.push_back(start.camera);
   } catch (const CalibrationError& error) {

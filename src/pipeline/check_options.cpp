@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "tartan_calib/text.h"
+
 namespace tartan_calib::pipeline {
 namespace {
-
-std::string camName(int camera_index) { return "cam" + std::to_string(camera_index); }
 
 std::string sizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
@@ -35,8 +35,8 @@ void checkOptions(const CalibrateOptions& options, std::size_t num_cameras) {
   }
   for (const int index : solve.fixed_cameras) {
     if (index < 0 || static_cast<std::size_t>(index) >= num_cameras) {
-      throw InputError("there is no " + camName(index) + " to fix: the cameras are cam0 to " +
-                       camName(static_cast<int>(num_cameras) - 1));
+      throw InputError("there is no " + cameraName(index) + " to fix: the cameras are cam0 to " +
+                       cameraName(static_cast<int>(num_cameras) - 1));
     }
   }
 }
@@ -44,7 +44,7 @@ void checkOptions(const CalibrateOptions& options, std::size_t num_cameras) {
 void checkCorners(const CameraCorners& corners, int camera_index, int num_target_corners) {
   const observation::CameraView* last = nullptr;
   for (const observation::CameraView& image : corners.images) {
-    const std::string place = camName(camera_index) + ", image " + std::to_string(image.stamp_ns);
+    const std::string place = cameraName(camera_index) + ", image " + std::to_string(image.stamp_ns);
     if (last != nullptr && last->stamp_ns >= image.stamp_ns) {
       throw InputError(place + ": the stamps of a camera's images must increase");
     }
@@ -68,11 +68,11 @@ calibration::CameraSpec cameraSpec(const CalibrateOptions& options, const Camera
   if (options.known_rig) {
     const camera::Camera& known = options.known_rig->cameras[at].camera;
     if (camera::modelName(known.model) != spec.model_name) {
-      throw InputError(camName(camera_index) + " is to be " + spec.model_name + ", the calibration to start from has " +
+      throw InputError(cameraName(camera_index) + " is to be " + spec.model_name + ", the calibration to start from has " +
                        camera::modelName(known.model));
     }
     if (known.width != spec.width || known.height != spec.height) {
-      throw InputError(camName(camera_index) + " has images of " + sizeText(spec.width, spec.height) +
+      throw InputError(cameraName(camera_index) + " has images of " + sizeText(spec.width, spec.height) +
                        ", the calibration to start from is for " + sizeText(known.width, known.height));
     }
     spec.known_model = known.model;

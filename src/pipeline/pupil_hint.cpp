@@ -1,7 +1,6 @@
 #include "pupil_hint.h"
 
-#include <array>
-#include <cstdio>
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -25,13 +24,10 @@ std::optional<std::string> pupilHint(const calibration::Solution& solution, cons
   if (trial.status != calibration::SolveStatus::kConverged || trial.sigma_px > kExplainedShare * solution.sigma_px) {
     return std::nullopt;
   }
-  std::array<char, 512> text{};
-  std::snprintf(
-      text.data(), text.size(),
+  return format(
       "residuals fall from %.2f to %.2f px when the entrance pupil of the lens may move: the board was so near that "
       "no central model holds. Record it from farther away, or add --estimate-pupil-shift for a model of far scenes",
       solution.sigma_px, trial.sigma_px);
-  return text.data();
 }
 
 }  // namespace tartan_calib::pipeline

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
+
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -26,19 +26,6 @@ constexpr int kCoverageCells = 10;  ///< per row and column
 constexpr double kManyOutliers_ratio = 0.05;
 /// No lens that its model fits leaves so much.
 constexpr double kLargeRms_px = 1.0;
-
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-
-std::string format(const char* pattern, ...) {
-  std::array<char, 512> text{};
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text.data(), text.size(), pattern, arguments);
-  va_end(arguments);
-  return text.data();
-}
-
-std::string camName(int camera_index) { return "cam" + std::to_string(camera_index); }
 
 double coverage(const CalibrationResult& result, int camera_index) {
   const camera::Camera& camera = result.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera;
@@ -84,7 +71,7 @@ class CameraWarnings {
   }
 
  private:
-  void add(const std::string& text) { warnings_.push_back(camName(index_) + ": " + text); }
+  void add(const std::string& text) { warnings_.push_back(cameraName(index_) + ": " + text); }
 
   void checkAmount() {
     if (statistics_.num_views < kFewViews || statistics_.num_corners < kFewCorners) {
@@ -157,14 +144,6 @@ class CameraWarnings {
   std::vector<std::string> warnings_;
 };
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    text += (text.empty() ? "" : ", ") + part;
-  }
-  return text;
-}
-
 }  // namespace
 
 std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index) {
@@ -174,7 +153,7 @@ std::optional<std::string> hemisphereNote(const CalibrationResult& result, int c
   if (camera::kalibrModel(model) != "pinhole" || max_angle_rad <= 0.5 * kPi) {
     return std::nullopt;
   }
-  return camName(camera_index) +
+  return cameraName(camera_index) +
          format(
              ": corners to %.1f degrees from the axis were used; %s is on the true angle here, Kalibr and OpenCV stop at 90",
              max_angle_rad * kDegreesPerRadian, camera::modelName(model).c_str());
@@ -214,14 +193,14 @@ std::optional<std::string> pupilNote(const CalibrationResult& result, int camera
     return std::nullopt;
   }
   const double angle_rad = result.cameras[at].statistics.max_polar_angle_rad;
-  return camName(camera_index) +
+  return cameraName(camera_index) +
          format(": the entrance pupil moves by %.2f mm from the axis to %.0f degrees; the model alone holds for far points",
                 1e3 * camera.pupil.at_m(angle_rad), angle_rad * kDegreesPerRadian);
 }
 
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target) {
   std::vector<std::string> warnings;
-  const auto add = [&](const std::string& text) { warnings.push_back(camName(camera_index) + ": " + text); };
+  const auto add = [&](const std::string& text) { warnings.push_back(cameraName(camera_index) + ": " + text); };
   if (corners.num_other_size > 0) {
     add(format("%zu images are not %dx%d as the others and were skipped", corners.num_other_size, corners.width,
                corners.height));

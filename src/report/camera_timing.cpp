@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "tartan_calib/median.h"
+
 namespace tartan_calib::report {
 namespace {
 
@@ -168,12 +170,6 @@ class DelayFit {
   int num_moving_ = 0;
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return values.empty() ? 0.0 : *middle;
-}
-
 }  // namespace
 
 std::vector<CameraTiming> cameraTimings(const pipeline::CalibrationResult& result, const std::vector<SeenCorners>& corners) {
@@ -198,7 +194,7 @@ std::vector<CameraTiming> cameraTimings(const pipeline::CalibrationResult& resul
     }
     if (fit.isDetermined()) {
       timing.num_views = static_cast<int>(stamp_differences_ns.size());
-      timing.median_stamp_ns = median(stamp_differences_ns);
+      timing.median_stamp_ns = upperMedian(stamp_differences_ns);
       timing.delay_ns = fit.delay_ns();
       timing.delay_stdev_ns = fit.delayStdev_ns();
       timing.speed_px_per_ms = fit.speedPerMs_px();

@@ -1,4 +1,5 @@
 #include "tartan_calib/report/pictures.h"
+#include "tartan_calib/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -197,8 +198,7 @@ std::vector<CameraPictures> takePictures(const std::vector<pipeline::CameraStrea
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const std::vector<int> worst = worstViews(corners[i], options.num_worst);
     const auto max_frames = std::max<std::size_t>(1, static_cast<std::size_t>(options.max_frames) / streams.size());
-    Photographer photographer(orders(result, static_cast<int>(i), corners[i], worst, max_frames), folder,
-                              "cam" + std::to_string(i));
+    Photographer photographer(orders(result, static_cast<int>(i), corners[i], worst, max_frames), folder, cameraName(i));
     photographer.run(streams[i], options);
     for (const auto& [view, taken] : photographer.taken) {
       if (taken.frame) {

@@ -6,6 +6,7 @@
 #include "json.h"
 #include "tartan_calib/io/atomic_file.h"
 #include "tartan_calib/io/results_text.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -131,7 +132,7 @@ std::string statisticsText(const calibration::CameraStatistics& statistics) {
 }
 
 std::string cameraText(const std::string& folder, const ReportData& data, std::size_t index) {
-  const std::string name = "cam" + std::to_string(index);
+  const std::string name = cameraName(index);
   const calibration::RigCamera& rig_camera = data.result.solution.rig.cameras[index];
   const CameraAnalysis& analysis = data.analysis.cameras[index];
   JsonObject object;

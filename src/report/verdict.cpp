@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
+
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -38,25 +38,6 @@ constexpr double kSignificance = 6.0;  ///< in stdevs
 constexpr double kMinBiasOfRms = 0.3;  ///< a pattern smaller than this share of the residuals hardly moves a model
 constexpr double kMinDelay_ns = 0.2e6;
 
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-
-std::string format(const char* pattern, ...) {
-  std::array<char, 512> text{};
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text.data(), text.size(), pattern, arguments);
-  va_end(arguments);
-  return text.data();
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    text += (text.empty() ? "" : ", ") + part;
-  }
-  return text;
-}
-
 /// Models to try for a lens that the given one cannot follow.
 std::string richerModels(const std::string& model) {
   if (model == "pinhole-none") {
@@ -84,7 +65,7 @@ class CameraJudge {
         statistics_(result.cameras[index].statistics),
         counts_(result.solution.counts[index]),
         analysis_(analysis.cameras[index]),
-        name_("cam" + std::to_string(index)),
+        name_(cameraName(index)),
         reasons_(reasons) {}
 
   void judge() {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/program.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -64,14 +65,6 @@ Words names(const po::options_description& description) {
   return result;
 }
 
-std::string joined(const Words& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "--" : ", --") + word;
-  }
-  return text;
-}
-
 Words withPrefix(const Words& all, const std::string& prefix) {
   Words matches;
   for (const std::string& name : all) {
@@ -101,7 +94,7 @@ std::string fullName(std::string prefix) {
   }
   Words all = of_kalibr;
   all.insert(all.end(), own.begin(), own.end());
-  throw UsageError("flag --" + prefix + " is ambiguous: " + joined(all));
+  throw UsageError("flag --" + prefix + " is ambiguous: --" + joined(all, ", --"));
 }
 
 /// Every flag by its full name.

@@ -10,6 +10,7 @@
 #include "tartan_calib/io/image_folder.h"
 #include "tartan_calib/io/target_yaml.h"
 #include "tartan_calib/ros/bag_reader.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -48,14 +49,6 @@ std::vector<std::string> topicsOf(const std::vector<WithTopic>& cameras) {
     topics.push_back(camera.topic);
   }
   return topics;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : ", ") + word;
-  }
-  return text;
 }
 
 InputError noSuchTopic(const std::string& path, const std::string& topic, const std::vector<pipeline::CameraCorners>& all) {

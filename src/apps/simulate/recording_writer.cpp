@@ -8,6 +8,7 @@
 
 #include "tartan_calib/error.h"
 #include "tartan_calib/ros/bag_writer.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -51,7 +52,7 @@ class FolderRecording : public RecordingWriter {
 
   void write(const simulation::RenderedFrame& frame) override {
     for (std::size_t camera = 0; camera < frame.views.size(); ++camera) {
-      const fs::path camera_folder = temporary_ / ("cam" + std::to_string(camera));
+      const fs::path camera_folder = temporary_ / cameraName(camera);
       makeFolder(camera_folder);
       const fs::path file = camera_folder / (std::to_string(frame.stamp_ns) + ".png");
       if (!cv::imwrite(file.string(), frame.views[camera].image)) {

@@ -11,6 +11,7 @@
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/atomic_file.h"
 #include "tartan_calib/pipeline/virtual_view.h"
+#include "tartan_calib/text.h"
 #include "tartan_calibrate/point_cloud_picture.h"
 
 namespace tartan_calib::apps {
@@ -276,7 +277,7 @@ class CameraPictures {
 void writeDebugPictures(const Inputs& inputs, const pipeline::CalibrationResult& result,
                         const std::vector<std::string>& modes, const std::string& folder) {
   for (std::size_t i = 0; i < inputs.streams.size(); ++i) {
-    const fs::path own = inputs.streams.size() > 1 ? fs::path(folder) / ("cam" + std::to_string(i)) : fs::path(folder);
+    const fs::path own = inputs.streams.size() > 1 ? fs::path(folder) / cameraName(i) : fs::path(folder);
     CameraPictures(inputs, result, i, own).write(modes);
   }
 }

@@ -8,6 +8,7 @@
 
 #include "calibrate_cameras/flags.h"
 #include "common/program.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -27,14 +28,6 @@ constexpr std::size_t kAnyNumber = 1000;
 
 bool contains(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-std::string joined(const Words& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : " ") + word;
-  }
-  return text;
 }
 
 double number(const std::string& flag, const Words& values) {
@@ -83,7 +76,7 @@ void applyProjections(const Words& values, TartanCommand& command) {
   command.words.insert(command.words.end(), values.begin(), values.end());
   if (!values.empty() && !contains(values, "cornerpredictor")) {
     command.words.insert(command.words.begin(), {"--max-rounds", "0"});  // a later --max-rounds takes its place
-    command.notes.push_back("--projections " + joined(values) +
+    command.notes.push_back("--projections " + joined(values, " ") +
                             ": corners are not looked for at their predictions; add cornerpredictor for both");
   }
 }
@@ -96,8 +89,8 @@ void applyDebugModes(const Words& values, TartanCommand& command) {
       continue;
     }
     if (std::find(kModes.begin(), kModes.end(), mode) == kModes.end()) {
-      throw UsageError("--debug-modes takes " + joined(Words(kModes.begin(), kModes.end())) + " and none, not '" + mode +
-                       "'");
+      throw UsageError("--debug-modes takes " + joined(Words(kModes.begin(), kModes.end()), " ") + " and none, not '" +
+                       mode + "'");
     }
     command.debug_modes.push_back(mode);
   }
