@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robust.h"
 #include "tartan_calib/calibration/pose.h"
 #include "tartan_calib/calibration/solve.h"
+#include "tartan_calib/median.h"
 
 namespace tartan_calib::calibration {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "calibrate_cameras/progress_bar.h"
+#include "common/progress_bar.h"
 
 namespace tartan_calib::apps {
 namespace {

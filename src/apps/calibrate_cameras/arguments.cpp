@@ -8,26 +8,12 @@
 #include "calibrate_cameras/refinement_flags.h"
 #include "calibrate_cameras/rig_file.h"
 #include "common/program.h"
+#include "common/recording.h"
 
 namespace tartan_calib::apps {
 namespace {
 
 using Words = std::vector<std::string>;
-
-io::RecordingOptions selectionFrom(const Flags& flags) {
-  io::RecordingOptions selection;
-  if (flags.has("bag-from-to")) {
-    const auto window = flags.get<std::vector<double>>("bag-from-to");
-    if (window.size() != 2) {
-      throw UsageError("--bag-from-to needs two numbers of seconds: the start and the end");
-    }
-    selection.window = io::TimeWindow{window[0], window[1]};
-  }
-  if (flags.has("bag-freq")) {
-    selection.max_rate_hz = flags.get<double>("bag-freq");
-  }
-  return selection;
-}
 
 calibration::LinearSolver linearSolver(const std::string& name) {
   if (name == "schur") {
@@ -163,7 +149,7 @@ Arguments parseArguments(const std::vector<std::string>& words) {
   arguments.topics = flags.get<Words>("topics");
   arguments.target_file = flags.get<std::string>("target");
   arguments.init_file = flags.get<std::string>("init");
-  arguments.selection = selectionFrom(flags);
+  arguments.selection = selectionFrom(flags.values());
   arguments.calibrate = calibrateFrom(flags);
   arguments.export_poses = flags.has("export-poses");
   arguments.export_corners = flags.has("export-corners");

@@ -4,7 +4,7 @@
 
 #include "calibrate_cameras/inputs.h"
 #include "calibrate_cameras/outputs.h"
-#include "calibrate_cameras/progress_bar.h"
+#include "common/progress_bar.h"
 #include "calibrate_cameras/report.h"
 #include "tartan_calib/pipeline/calibrate.h"
 

@@ -19,6 +19,8 @@ class Flags {
     return has(name) ? values_[name].as<T>() : fallback;
   }
 
+  const boost::program_options::variables_map& values() const { return values_; }
+
  private:
   boost::program_options::variables_map values_;
 };

@@ -2,28 +2,15 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 
 #include "common/program.h"
+#include "common/recording.h"
 #include "tartan_calib/io/camchain.h"
 #include "tartan_calib/io/corners_csv.h"
-#include "tartan_calib/io/image_folder.h"
-#include "tartan_calib/io/target_yaml.h"
-#include "tartan_calib/ros/bag_reader.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
-
-using Warn = std::function<void(const std::string&)>;
-
-target::Target openTarget(const std::string& path, const Warn& warn) {
-  const io::LoadedTarget loaded = io::loadTarget(path);
-  for (const std::string& warning : loaded.warnings) {
-    warn(warning);
-  }
-  return loaded.target;
-}
 
 /// Takes over what the arguments leave to the camchain.
 void applyInit(const std::string& path, Inputs& inputs) {
@@ -69,14 +56,6 @@ std::vector<pipeline::CameraCorners> openCorners(const std::string& path, const 
   return cameras;
 }
 
-std::vector<pipeline::CameraStream> openStreams(const Arguments& arguments, const std::vector<std::string>& topics,
-                                                const Warn& warn) {
-  io::RecordingOptions selection = arguments.selection;
-  selection.notice = warn;
-  return std::filesystem::is_directory(arguments.recording) ? io::openImageFolder(arguments.recording, topics, selection)
-                                                            : ros::openBag(arguments.recording, topics, selection);
-}
-
 void applyFocalHint(const char* value, Inputs& inputs, const Warn& warn) {
   inputs.options.focal_hint_px = focalHint(value);
   if (value != nullptr && !inputs.options.focal_hint_px) {
@@ -115,7 +94,7 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
                      " topics");
   }
   if (inputs.corners.empty()) {
-    inputs.streams = openStreams(arguments, inputs.topics, warn);
+    inputs.streams = openRecording(arguments.recording, inputs.topics, arguments.selection, warn);
     inputs.topics = topicsOf(inputs.streams);
   }
   return inputs;

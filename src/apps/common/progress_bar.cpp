@@ -1,4 +1,4 @@
-#include "calibrate_cameras/progress_bar.h"
+#include "common/progress_bar.h"
 
 #include <cmath>
 #include <cstdio>
