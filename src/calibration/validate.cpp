@@ -103,12 +103,12 @@ Deviation deviationFromNeighbours(const std::vector<CornerError>& corners, std::
     u.push_back(corners[i].error_px.x());
     v.push_back(corners[i].error_px.y());
   }
-  const Eigen::Vector2d middle_px(median(u), median(v));
+  const Eigen::Vector2d middle_px(upperMedian(u), upperMedian(v));
   std::vector<double> distances_px;
   for (const std::size_t i : neighbours) {
     distances_px.push_back((corners[i].error_px - middle_px).norm());
   }
-  return {(corners[index].error_px - middle_px).norm(), median(distances_px)};
+  return {(corners[index].error_px - middle_px).norm(), upperMedian(distances_px)};
 }
 
 /// A lens that is wrong at its rim has errors that grow there from corner to corner: usual is what the neighbourhood says.
@@ -122,7 +122,7 @@ void markWrongCorners(const std::vector<Eigen::Vector3d>& target_points, std::ve
     deviations.push_back(deviationFromNeighbours(corners, i, target_points));
     own_px.push_back(deviations.back().own_px);
   }
-  const double usual_px = median(own_px);
+  const double usual_px = upperMedian(own_px);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const double limit_px = std::max(kMinWrong_px, kWrongRatio * std::max(usual_px, deviations[i].usual_px));
     corners[i].is_wrong = deviations[i].own_px > limit_px;
