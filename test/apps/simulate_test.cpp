@@ -118,7 +118,7 @@ TEST_F(Simulate, TakesTheBoardOfAFile) {
   std::ofstream(folder / "board.yaml") << "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 7\n"
                                           "rowSpacingMeters: 0.06\ncolSpacingMeters: 0.05\n";
   const simulation::Scene scene = makeScene(options({"--output-dir", path("run"), "--target", path("board.yaml")}));
-  EXPECT_EQ(targetText(scene.target), bytes("board.yaml"));
+  EXPECT_EQ(io::targetText(scene.target), bytes("board.yaml"));
 }
 
 TEST_F(Simulate, LeavesNothingBehindWhereItCannotWrite) {

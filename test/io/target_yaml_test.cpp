@@ -169,5 +169,27 @@ TEST(TargetYaml, LoadsAFile) {
   EXPECT_TRUE(std::holds_alternative<target::Checkerboard>(loadTarget(folder.file("board.yaml")).target));
 }
 
+TEST(TargetYaml, ReadsWhatItWrote) {
+  const std::vector<target::Target> targets = {target::AprilGrid{3, 4, 1.0, 0.1 + 0.2, "t36h10", 7, 1},
+                                               target::Checkerboard{7, 5, 1.0 / 3.0, 0.02},
+                                               target::CircleGrid{4, 11, 0.02, true}};
+  for (const target::Target& target : targets) {
+    const std::string text = targetText(target);
+    const LoadedTarget loaded = parseTarget(text, "written.yaml");
+    EXPECT_EQ(targetText(loaded.target), text);
+    EXPECT_EQ(target::cornerPoints(loaded.target), target::cornerPoints(target));
+    EXPECT_TRUE(loaded.warnings.empty());
+  }
+  const auto grid = std::get<target::AprilGrid>(parseTarget(targetText(targets.front()), "written.yaml").target);
+  EXPECT_EQ(grid.family, "t36h10");
+  EXPECT_EQ(grid.code_offset, 7);
+  EXPECT_EQ(grid.border_cells, 1);
+}
+
+TEST(TargetYaml, WritesLengthsThatStricterReadersTakeForFloats) {
+  EXPECT_NE(targetText(target::AprilGrid{3, 4, 1.0, 2.0, "t36h11", 0, 2}).find("tagSize: 1.0\ntagSpacing: 2.0\n"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace tartan_calib::io

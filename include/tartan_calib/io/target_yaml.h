@@ -20,4 +20,7 @@ LoadedTarget loadTarget(const std::string& path);
 /// As loadTarget; `name` stands for the file in messages.
 LoadedTarget parseTarget(const std::string& text, const std::string& name);
 
+/// The YAML that loadTarget reads as this target, the optional keys included.
+std::string targetText(const target::Target& target);
+
 }  // namespace tartan_calib::io

@@ -1,33 +1,17 @@
 #include "simulate/truth.h"
 
 #include <iomanip>
-#include <limits>
 #include <set>
 
 #include "simulate/recording_writer.h"
-#include "tartan_calib/error.h"
 #include "tartan_calib/io/atomic_file.h"
 #include "tartan_calib/io/camchain.h"
 #include "tartan_calib/io/corners_csv.h"
 #include "tartan_calib/io/poses_csv.h"
+#include "tartan_calib/io/target_yaml.h"
 
 namespace tartan_calib::apps {
 namespace {
-
-struct TargetText {
-  std::ostringstream& out;
-
-  void operator()(const target::AprilGrid& grid) const {
-    out << "target_type: 'aprilgrid'\ntagCols: " << grid.tag_cols << "\ntagRows: " << grid.tag_rows
-        << "\ntagSize: " << grid.tag_size_m << "\ntagSpacing: " << grid.tag_spacing_ratio << "\ntagFamily: " << grid.family
-        << "\ncodeOffset: " << grid.code_offset << "\ntagBorder: " << grid.border_cells << '\n';
-  }
-  void operator()(const target::Checkerboard& board) const {
-    out << "target_type: 'checkerboard'\ntargetCols: " << board.cols << "\ntargetRows: " << board.rows
-        << "\nrowSpacingMeters: " << board.row_spacing_m << "\ncolSpacingMeters: " << board.col_spacing_m << '\n';
-  }
-  void operator()(const target::CircleGrid& /*grid*/) const { throw InputError("circle grids are not simulated"); }
-};
 
 /// Cameras that see the same visible corner at the same time, camera by camera.
 std::vector<std::vector<int>> overlaps(const std::vector<pipeline::CameraCorners>& cameras) {
@@ -78,13 +62,6 @@ calibration::Rig rig(const simulation::Scene& scene) {
 }
 
 }  // namespace
-
-std::string targetText(const target::Target& target) {
-  std::ostringstream out;
-  out << std::setprecision(std::numeric_limits<double>::max_digits10 - 2);
-  std::visit(TargetText{out}, target);
-  return out.str();
-}
 
 Truth::Truth(const simulation::Scene& scene) : scene_(scene) {
   visibility_ << "camera,stamp_ns,corner_id,visibility,neighbour_px,motion_px\n" << std::fixed << std::setprecision(2);
@@ -146,7 +123,7 @@ void Truth::save(const std::string& base) const {
     result.solution.views.push_back({frame.stamp_ns, {}});
     result.solution.T_rig_target.push_back(frame.T_rig_target);
   }
-  io::writeFile(base + "-target.yaml", targetText(scene_.target));
+  io::writeFile(base + "-target.yaml", io::targetText(scene_.target));
   io::writeFile(base + "-truth-camchain.yaml", io::camchainText(chain));
   io::writeFile(base + "-truth-poses.csv", io::posesText(result));
   io::saveCorners(base + "-truth-corners.csv", cameras_);

@@ -29,7 +29,4 @@ class Truth {
   std::ostringstream visibility_;
 };
 
-/// A target in Kalibr's YAML. Throws InputError for circle grids, which are not simulated.
-std::string targetText(const target::Target& target);
-
 }  // namespace tartan_calib::apps
