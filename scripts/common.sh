@@ -47,12 +47,12 @@ ensure_packages() {
     fail "apt-get could not install ${missing[*]}; see its messages above."
 }
 
-# What the core needs, what ROS adds, and what the tests add.
+# What the core needs, what ROS and the programs, which need it, add, and what the tests add.
 core_packages=(cmake g++ make libapriltag-dev libboost-program-options-dev libeigen3-dev libopencv-dev libsuitesparse-dev
   libyaml-cpp-dev)
-ros_packages=(catkin libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev python3-matplotlib python3-roslaunch
-  ros-environment rosbash)
-test_packages=(libceres-dev libgtest-dev python3-yaml)
+ros_packages=(catkin libcairo2-dev libcv-bridge-dev librosbag-dev libroscpp-dev libsensor-msgs-dev pkg-config
+  python3-matplotlib python3-roslaunch ros-environment rosbash)
+test_packages=(libceres-dev libgtest-dev poppler-utils python3-yaml)
 # shellcheck disable=SC2034
 all_packages=("${core_packages[@]}" "${ros_packages[@]}" "${test_packages[@]}")
 
