@@ -137,8 +137,8 @@ def rms(record, index=0):
 
 
 def difference(*arguments):
-    """Rms difference [px] that compare_camchains finds for a single camera."""
-    text, _ = run("compare_camchains", *arguments)
+    """Rms difference [px] that compare_calibrations finds for a single camera."""
+    text, _ = run("compare_calibrations", *arguments)
     return f"{float(re.search(r'differs by ([0-9.]+) px rms', text).group(1)):.3f}"
 
 

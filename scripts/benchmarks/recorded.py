@@ -101,7 +101,7 @@ def euroc(settings):
     results.append(["baseline [m]", f"{baseline:.5f}", "0.1101 within 0.001"])
     table(["figure", "reached", "asked"], results)
     publish_euroc_chain(chain)
-    text, _ = run("compare_camchains", WORK / "euroc-camchain.yaml", WORK / "euroc-published-camchain.yaml", "--corners",
+    text, _ = run("compare_calibrations", WORK / "euroc-camchain.yaml", WORK / "euroc-published-camchain.yaml", "--corners",
                   WORK / "euroc.csv")
     print("Difference to the published projection where the recording has corners:\n\n```\n" + text.strip() + "\n```\n")
     check_euroc(target, topics)
@@ -125,7 +125,7 @@ def check_euroc(target, topics):
         row = [label, ", ".join(f"{rms(record, index):.3f}" for index in range(2)),
                ", ".join("({:.1f} {:.1f})".format(*chain[f"cam{index}"]["intrinsics"][-2:]) for index in range(2))]
         for other in ["euroc", "euroc-published"]:
-            text, _ = run("compare_camchains", f"{own.with_suffix('')}-camchain.yaml", WORK / f"{other}-camchain.yaml",
+            text, _ = run("compare_calibrations", f"{own.with_suffix('')}-camchain.yaml", WORK / f"{other}-camchain.yaml",
                           "--corners", corners)
             row.append(", ".join(f"{float(px):.2f}" for px in re.findall(r"differs by ([0-9.]+) px rms", text)))
         rows.append(row)

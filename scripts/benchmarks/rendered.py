@@ -18,9 +18,9 @@ def sample(_):
     rows = []
     for label, flags in no_rounds("sample"):
         _, record, seconds = calibrate(WORK / "sample", bag, target, models, topics, *flags)
-        text, _ = run("compare_camchains", WORK / "sample-camchain.yaml", truth)
+        text, _ = run("compare_calibrations", WORK / "sample-camchain.yaml", truth)
         errors = ", ".join(f"{float(value):.4f}" for value in re.findall(r"differs by ([0-9.]+) px rms", text))
-        place = re.search(r"place on the rig: differs by ([0-9.]+) mrad and ([0-9.]+) mm", text)
+        place = re.search(r"place differs by ([0-9.]+) mrad and ([0-9.]+) mm", text)
         rows.append([label, f"{camera(record, 0)['corners']['used']}, {camera(record, 1)['corners']['used']}",
                      f"{rms(record, 0):.4f}, {rms(record, 1):.4f}", errors, f"{place.group(1)}, {place.group(2)}", f"{seconds:.1f}"])
     table(["", "corners", "rms [px]", "true error of the projection to 90 degrees, rms [px]",

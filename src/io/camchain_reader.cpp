@@ -59,6 +59,8 @@ class CameraReader {
     return geometry::rigidFromMatrix(matrix);
   }
 
+  bool hasBaseline() const { return map_["T_cn_cnm1"].IsDefined(); }
+
   std::string topic() const { return map_["rostopic"].IsDefined() ? text("rostopic") : ""; }
 
   std::vector<int> overlaps() const {
@@ -136,7 +138,7 @@ class CameraReader {
 
 }  // namespace
 
-Camchain parseCamchain(const std::string& text, const std::string& name) {
+Camchain parseCamchain(const std::string& text, const std::string& name, Extrinsics extrinsics) {
   const YAML::Node cameras = parseYamlMap(text, name);
   Camchain chain;
   for (std::size_t index = 0; index < cameras.size(); ++index) {
@@ -148,7 +150,9 @@ Camchain parseCamchain(const std::string& text, const std::string& name) {
     }
     const CameraReader reader(node, name, camera);
     calibration::RigCamera rig_camera{reader.camera(), geometry::Rigid3()};
-    if (index > 0) {
+    chain.has_extrinsics =
+        chain.has_extrinsics && (index == 0 || extrinsics == Extrinsics::kRequired || reader.hasBaseline());
+    if (index > 0 && chain.has_extrinsics) {
       rig_camera.T_cam_rig = reader.baseline() * chain.rig.cameras.back().T_cam_rig;
     }
     chain.rig.cameras.push_back(rig_camera);
@@ -161,6 +165,8 @@ Camchain parseCamchain(const std::string& text, const std::string& name) {
   return chain;
 }
 
-Camchain loadCamchain(const std::string& path) { return parseCamchain(readFile(path), path); }
+Camchain loadCamchain(const std::string& path, Extrinsics extrinsics) {
+  return parseCamchain(readFile(path), path, extrinsics);
+}
 
 }  // namespace tartan_calib::io

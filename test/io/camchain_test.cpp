@@ -220,6 +220,15 @@ TEST(CamchainReader, EveryMissingKeyIsNamedWithFileAndCamera) {
                             {"chain.yaml:", "cam1", "'T_cn_cnm1'", "missing"});
 }
 
+TEST(CamchainReader, ExtrinsicsMayBeMissingWhereTheCallerSaysSo) {
+  const std::string no_baseline = std::regex_replace(std::string(kKalibrStereo), std::regex("  (T_cn_cnm1:|- ).*\n"), "");
+  const Camchain chain = parseCamchain(no_baseline, "chain.yaml", Extrinsics::kOptional);
+  EXPECT_FALSE(chain.has_extrinsics);
+  EXPECT_EQ(chain.rig.cameras.size(), 2U);
+  EXPECT_TRUE(parseCamchain(kKalibrStereo, "chain.yaml", Extrinsics::kOptional).has_extrinsics);
+  EXPECT_TRUE(parseCamchain(kKalibrDs, "chain.yaml", Extrinsics::kOptional).has_extrinsics);
+}
+
 TEST(CamchainReader, EveryBadValueIsNamedWithFileCameraAndKey) {
   const auto expect_rejected = [](const char* base, const std::string& from, const std::string& to,
                                   std::initializer_list<std::string> parts) {

@@ -4,8 +4,8 @@
 
 #include "calibrate_cameras/inputs.h"
 #include "calibrate_cameras/outputs.h"
-#include "common/progress_bar.h"
 #include "calibrate_cameras/report.h"
+#include "common/progress_bar.h"
 #include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::apps {
