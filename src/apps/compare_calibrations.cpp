@@ -86,7 +86,6 @@ int run(int argc, char** argv) {
   const RigComparison comparison = compareRigs(a.rig, b.rig, region);
   std::cout << comparisonText(a, b, region, comparison);
   if (!picture.empty()) {
-    const UninterruptedSection file_is_written_whole;
     savePng(picture, differenceMap(a, b, region, comparison));
     std::cout << "Map written to " << picture << '\n';
   }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "common/output.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/atomic_file.h"
 #include "tartan_calib/io/calibration_yaml.h"
@@ -25,27 +26,14 @@ bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Folders such as `.` and `rig/` have no name of their own to begin a file's name with.
-std::string folderPrefix(const std::string& folder) {
-  fs::path path = fs::path(folder).lexically_normal();
-  if (path.filename().empty()) {
-    path = path.parent_path();
-  }
-  const bool has_name = !path.filename().empty() && path.filename() != "." && path.filename() != "..";
-  return (has_name ? path : fs::canonical(folder)).string();
-}
-
 }  // namespace
 
 std::string outputPrefix(const Arguments& arguments) {
   if (!arguments.output_prefix.empty()) {
     return arguments.output_prefix;
   }
-  if (fs::is_directory(arguments.recording)) {
-    return folderPrefix(arguments.recording);
-  }
   if (!arguments.recording.empty()) {
-    return fs::path(arguments.recording).replace_extension().string();
+    return recordingPrefix(arguments.recording);
   }
   const std::string& corners = arguments.corners_file;
   return endsWith(corners, kCornersSuffix) ? corners.substr(0, corners.size() - std::strlen(kCornersSuffix))

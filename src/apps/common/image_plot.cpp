@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "common/interrupt.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/atomic_file.h"
 #include "tartan_calib/text.h"
@@ -279,6 +280,7 @@ void savePng(const std::string& path, const cv::Mat& picture) {
   checkPngName(path);
   std::vector<uchar> bytes;
   cv::imencode(".png", picture, bytes);
+  const UninterruptedSection file_is_written_whole;
   io::writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -53,7 +53,7 @@ class ImagePlot {
 /// Drawings side by side, two in a row.
 cv::Mat arrange(const std::vector<cv::Mat>& pictures);
 
-/// Whole or not at all. Throws InputError where `path` does not end in .png or cannot be written.
+/// Whole or not at all; Ctrl-C waits for it. Throws InputError where `path` does not end in .png or cannot be written.
 void savePng(const std::string& path, const cv::Mat& picture);
 
 /// Throws InputError for a path that savePng would refuse by its name.

@@ -1,0 +1,130 @@
+#include "detect_corners/detect_corners.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "common/interrupt.h"
+#include "common/output.h"
+#include "common/program.h"
+#include "common/progress_bar.h"
+#include "common/recording.h"
+#include "detect_corners/corner_pictures.h"
+#include "tartan_calib/io/corners_csv.h"
+#include "tartan_calib/pipeline/warnings.h"
+#include "tartan_calib/text.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+/// `12.3, least 4, median 14, most 16`.
+std::string perImageText(const std::vector<observation::CameraView>& images) {
+  std::vector<std::size_t> counts;
+  std::size_t total = 0;
+  for (const observation::CameraView& image : images) {
+    counts.push_back(image.corners.size());
+    total += image.corners.size();
+  }
+  std::sort(counts.begin(), counts.end());
+  return format("%zu, %.1f in an image with board (least %zu, median %zu, most %zu)", total,
+                static_cast<double>(total) / static_cast<double>(counts.size()), counts.front(), counts[counts.size() / 2],
+                counts.back());
+}
+
+std::string tagsText(const detection::DetectionCounts& counts) {
+  return format(
+      "%d; dropped: %d seen twice in an image, %d that are not on the board, %d mirrored; %d with the other border",
+      counts.tags, counts.duplicate_tags, counts.foreign_tags, counts.mirrored_tags, counts.other_border_tags);
+}
+
+void throwIfNothing(const std::vector<pipeline::CameraCorners>& cameras, const target::Target& target) {
+  std::string reasons;
+  for (const pipeline::CameraCorners& camera : cameras) {
+    if (!camera.images.empty()) {
+      return;
+    }
+    if (camera.num_images > 0 && camera.num_unreadable == camera.num_images) {
+      throw InputError(camera.topic + ": no image can be read: " + camera.unreadable_reason);
+    }
+    reasons += (reasons.empty() ? "" : "; ") + camera.topic + ": none of its " + std::to_string(camera.num_images) +
+               " images shows the target: " +
+               pipeline::otherSizeNote(camera, target).value_or("check target file, focus and exposure");
+  }
+  throw CalibrationError(reasons);
+}
+
+std::vector<pipeline::CameraCorners> detectAll(const std::vector<pipeline::CameraStream>& streams,
+                                               const target::Target& target, const DetectOptions& options,
+                                               ProgressBar& bar) {
+  pipeline::CalibrateOptions detect;
+  detect.detector.min_border_distance_px = options.min_border_distance_px;
+  detect.num_threads = options.num_threads;
+  pipeline::Listener listener;
+  listener.progress = [&bar](const pipeline::Progress& progress) { bar.show(progress.done, progress.total); };
+  std::vector<pipeline::CameraCorners> cameras;
+  for (const pipeline::CameraStream& stream : streams) {
+    const int index = static_cast<int>(cameras.size());
+    std::printf("Looking for the board in %zu images of %s\n", stream.num_images, stream.topic.c_str());
+    std::fflush(stdout);
+    cameras.push_back(pipeline::detectCorners(stream, index, target, detect, listener));
+    bar.clear();
+    for (const std::string& warning : pipeline::detectionWarnings(cameras.back(), index, target)) {
+      printWarning(warning);
+    }
+    std::printf("%s", detectionText(cameras.back(), index, target).c_str());
+    std::fflush(stdout);
+  }
+  return cameras;
+}
+
+void drawAll(const std::vector<pipeline::CameraStream>& streams, const std::vector<pipeline::CameraCorners>& cameras,
+             const target::Target& target, const DetectOptions& options, ProgressBar& bar) {
+  const std::size_t per_topic = std::max<std::size_t>(1, static_cast<std::size_t>(options.max_pictures) / streams.size());
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const std::string folder = (std::filesystem::path(options.picture_folder) / cameraName(i)).string();
+    const std::size_t num_drawn =
+        writeCornerPictures(streams[i], cameras[i].images, target, folder, per_topic,
+                            [&bar](std::size_t done, std::size_t total) { bar.show(done, total); });
+    bar.clear();
+    std::printf("%zu pictures written to %s\n", num_drawn, folder.c_str());
+  }
+}
+
+}  // namespace
+
+std::string detectionText(const pipeline::CameraCorners& corners, int camera_index, const target::Target& target) {
+  constexpr double kPercent = 100.0;
+  std::string text =
+      format("%s (%s): %dx%d\n", cameraName(camera_index).c_str(), corners.topic.c_str(), corners.width, corners.height);
+  const auto num_images = static_cast<double>(std::max<std::size_t>(1, corners.num_images));
+  text += format("  images:  %zu, %zu with board (%.1f %%)\n", corners.num_images, corners.images.size(),
+                 kPercent * static_cast<double>(corners.images.size()) / num_images);
+  text += "  corners: " + (corners.images.empty() ? "none" : perImageText(corners.images)) +
+          format(", of %d\n", target::numCorners(target));
+  if (std::holds_alternative<target::AprilGrid>(target)) {
+    text += "  tags:    " + tagsText(corners.counts) + "\n";
+  }
+  return text;
+}
+
+void detectCorners(const DetectOptions& options) {
+  checkFolderOf(options.output);
+  const target::Target target = openTarget(options.target_file, printWarning);
+  const std::vector<pipeline::CameraStream> streams =
+      openRecording(options.recording, options.topics, options.selection, printWarning);
+  ProgressBar bar(isatty(STDOUT_FILENO) != 0);
+  const std::vector<pipeline::CameraCorners> cameras = detectAll(streams, target, options, bar);
+  throwIfNothing(cameras, target);
+  {
+    const UninterruptedSection file_is_written_whole;
+    io::saveCorners(options.output, cameras);
+  }
+  std::printf("Corners written to %s\n", options.output.c_str());
+  if (!options.picture_folder.empty()) {
+    drawAll(streams, cameras, target, options, bar);
+  }
+}
+
+}  // namespace tartan_calib::apps

@@ -1,0 +1,86 @@
+"""Corners detected alone are those that a calibration detects; nothing is left behind where there is no result."""
+
+import unittest
+
+import yaml
+
+from programs import Recordings, calibrate, interrupt_after, run
+
+TOPICS = ["/cam0/image_raw", "/cam1/image_raw"]
+MODELS = ["ds-none", "ds-none"]
+# The file has pixels to 1e-6. Of this small recording that moves the focal length by 1e-5 px, a millionth of its stdev.
+MAX_RATIO = 1e-6
+
+
+class DetectCorners(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.recordings = Recordings()
+        cls.addClassCleanup(cls.recordings.remove)
+        cls.bag = cls.recordings.simulate("rig", "--cameras", 2, "--resolution", "640x512", "--views", 24, "--yaw", 8)
+        cls.target = cls.recordings.target("rig")
+
+    def detect(self, *flags, topics=TOPICS, bag=None, target=None):
+        return run("detect_corners", "--bag", bag or self.bag, "--target", target or self.target, "--topics", *topics, *flags)
+
+    def assert_refused(self, finished, code, *parts):
+        self.assertEqual(finished.returncode, code, finished.stdout)
+        self.assertEqual(len(finished.stderr.splitlines()), 1, finished.stderr)
+        for part in ("[ERROR]", *parts):
+            self.assertIn(part, finished.stderr)
+
+    def test_a_calibration_from_its_corners_is_that_of_the_bag_without_rounds(self):
+        corners = self.recordings.path / "alone-corners.csv"
+        finished = self.detect("--output", corners)
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        self.assertIn("24, 24 with board (100.0 %)", finished.stdout)
+        finished = run("calibrate_cameras", "--corners", corners, "--target", self.target, "--models", *MODELS, "--no-report")
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        finished = calibrate(self.bag, self.target, MODELS, extra=["--max-rounds", "0"])
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        alone, direct = (yaml.safe_load((self.recordings.path / f"{name}-camchain.yaml").read_text()) for name in ("alone", "rig"))
+        for name, camera in direct.items():
+            for value, other in zip(camera["intrinsics"], alone[name]["intrinsics"]):
+                self.assertAlmostEqual(value, other, delta=MAX_RATIO * abs(value))
+        for row, other_row in zip(direct["cam1"]["T_cn_cnm1"], alone["cam1"]["T_cn_cnm1"]):
+            for value, other in zip(row, other_row):
+                self.assertAlmostEqual(value, other, delta=MAX_RATIO)
+
+    def test_the_same_bytes_whatever_the_threads(self):
+        files = [self.recordings.path / f"threads{count}.csv" for count in (1, 3)]
+        for count, file in zip((1, 3), files):
+            self.assertEqual(self.detect("--threads", count, "--output", file).returncode, 0)
+        self.assertEqual(*[file.read_bytes() for file in files])
+
+    def test_pictures_are_bounded_and_show_every_topic(self):
+        folder = self.recordings.path / "pictures"
+        finished = self.detect("--pictures", folder, "--max-pictures", 6)
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        for camera in ("cam0", "cam1"):
+            self.assertEqual(len(list((folder / camera).glob("*.png"))), 3)
+
+    def test_bad_input_is_one_line(self):
+        nowhere = self.recordings.path / "nowhere"
+        self.assert_refused(self.detect(bag=nowhere / "x.bag", ), 1, "nowhere")
+        self.assert_refused(self.detect(target=nowhere / "x.yaml"), 1, "x.yaml")
+        self.assert_refused(self.detect(topics=["/cam7/image_raw"]), 1, "/cam7/image_raw")
+        self.assert_refused(self.detect("--output", nowhere / "x.csv"), 1, "nowhere")
+        self.assert_refused(self.detect("--bag-from-to", "3"), 2, "--bag-from-to")
+
+    def test_no_board_is_no_result(self):
+        board = self.recordings.path / "circles.yaml"
+        board.write_text("target_type: circlegrid\ntargetCols: 4\ntargetRows: 11\nspacingMeters: 0.02\nasymmetricGrid: true\n")
+        output = self.recordings.path / "none.csv"
+        self.assert_refused(self.detect("--output", output, target=board), 1, "/cam0/image_raw", "/cam1/image_raw", "24 images")
+        self.assertFalse(output.exists())
+
+    def test_ctrl_c_ends_it_without_files(self):
+        before = set(self.recordings.path.iterdir())
+        code, output = interrupt_after("Looking for the board", "detect_corners", "--bag", self.bag, "--target", self.target,
+                                       "--topics", *TOPICS, "--output", self.recordings.path / "stopped.csv")
+        self.assertEqual(code, 130, output)
+        self.assertEqual(set(self.recordings.path.iterdir()), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
