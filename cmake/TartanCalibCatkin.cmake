@@ -19,11 +19,14 @@ if(PYTHON_EXECUTABLE AND NOT Python3_EXECUTABLE)
   set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE} CACHE FILEPATH "Python with the distribution's modules")
 endif()
 
-find_package(catkin QUIET COMPONENTS cv_bridge rosbag roscpp sensor_msgs)
-if(NOT (catkin_FOUND AND cv_bridge_FOUND AND rosbag_FOUND AND roscpp_FOUND AND sensor_msgs_FOUND))
-  message(STATUS "tartan_calib: no catkin with cv_bridge, rosbag, roscpp and sensor_msgs; only the core is built")
-  return()
-endif()
+set(ros_packages cv_bridge diagnostic_msgs rosbag roscpp sensor_msgs std_msgs std_srvs)
+find_package(catkin QUIET COMPONENTS ${ros_packages})
+foreach(package ${ros_packages})
+  if(NOT (catkin_FOUND AND ${package}_FOUND))
+    message(STATUS "tartan_calib: no catkin with ${package}; only the core is built")
+    return()
+  endif()
+endforeach()
 set(TARTAN_CALIB_ROS ON)
 if(DEFINED CACHE{CATKIN_DEVEL_PREFIX} AND TARGET tests)
   set(TARTAN_CALIB_IN_WORKSPACE ON)
@@ -39,7 +42,7 @@ set(EIGEN3_INCLUDE_DIRS ${EIGEN3_INCLUDE_DIR})
 
 # Static libraries in the order a linker wants them: a module before those it uses.
 set(TARTAN_CALIB_EXPORTED)
-foreach(module ros report io simulation pipeline calibration detection solver observation target camera geometry)
+foreach(module ros report io guidance simulation pipeline calibration detection solver observation target camera geometry)
   file(GLOB sources ${PROJECT_SOURCE_DIR}/src/${module}/*.cpp)
   if(sources)
     list(APPEND TARTAN_CALIB_EXPORTED tartan_calib_${module})
@@ -49,7 +52,7 @@ endforeach()
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES ${TARTAN_CALIB_EXPORTED}
-  CATKIN_DEPENDS cv_bridge rosbag roscpp sensor_msgs
+  CATKIN_DEPENDS ${ros_packages}
   DEPENDS APRILTAG CHOLMOD EIGEN3 OpenCV YAML_CPP)
 
 # tartan_calib_apps([USES <module>...] [LINK <library>...]): the programs. src/apps/<program>.cpp holds main() and becomes

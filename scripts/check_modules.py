@@ -20,17 +20,18 @@ ALLOWED = {
     "detection": "target observation",
     "calibration": "geometry camera target observation solver",
     "pipeline": "geometry camera target observation detection calibration",
+    "guidance": "geometry camera target observation detection calibration pipeline",
     "simulation": "geometry camera target observation",
     "io": "geometry camera target observation calibration pipeline",
     "report": "geometry camera target observation calibration pipeline io",
     "ros": "geometry camera target observation detection calibration pipeline io report",
-    "apps": "geometry camera target observation detection calibration pipeline simulation io report ros",
+    "apps": "geometry camera target observation detection calibration pipeline guidance simulation io report ros",
 }
 ALLOWED = {module: set(used.split()) for module, used in ALLOWED.items()}
 
 # Pattern, the modules that may match it, what is wrong elsewhere.
 RESERVED = [
-    (r'#include\s*<(ros|cv_bridge|sensor_msgs|std_msgs)/', {"ros", "apps"}, "includes ROS"),
+    (r'#include\s*<(ros|cv_bridge|(diagnostic|sensor|std)_msgs|std_srvs)/', {"ros", "apps"}, "includes ROS"),
     (r'#include\s*<rosbag/', {"ros"}, "opens bags"),
     (r'\bstd::(cout|cerr|clog)\b|\b(f|v|vf)?printf\s*\(|\b(f?puts|putchar)\s*\(', {"ros", "apps"}, "prints"),
     (r'\bROS_(DEBUG|INFO|WARN|ERROR|FATAL)', {"ros", "apps"}, "prints"),

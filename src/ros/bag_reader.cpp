@@ -11,10 +11,10 @@
 #include <mutex>
 #include <utility>
 
-#include "image_message.h"
 #include "message_head.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/gray_image.h"
+#include "tartan_calib/ros/image_message.h"
 
 namespace tartan_calib::ros {
 namespace {

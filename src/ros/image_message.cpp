@@ -1,4 +1,4 @@
-#include "image_message.h"
+#include "tartan_calib/ros/image_message.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "calibrate_cameras/arguments.h"
+#include "tartan_calib/guidance/kept_views.h"
+
+namespace tartan_calib::apps {
+
+/// Called on the thread of the job.
+struct JobListener {
+  std::function<void(const std::string& line)> progress;
+  std::function<void(const std::string& yaml)> camchain;
+};
+
+/// Writes views to a bag and does with it what `calibrate_cameras` does, on a thread of its own.
+class CalibrationJob {
+ public:
+  /// `arguments`, `command`: of calibrate_cameras, with the bag to write as recording.
+  CalibrationJob(Arguments arguments, std::string command, JobListener listener);
+  ~CalibrationJob();  ///< waits; the node's end stops the calibration
+  CalibrationJob(const CalibrationJob&) = delete;
+  CalibrationJob& operator=(const CalibrationJob&) = delete;
+
+  /// False, and nothing happens, while the last one runs.
+  bool start(std::vector<guidance::KeptView> views);
+
+ private:
+  void run(const std::vector<guidance::KeptView>& views);
+
+  Arguments arguments_;
+  std::string command_;
+  JobListener listener_;
+  std::atomic<bool> is_running_{false};
+  std::thread thread_;
+};
+
+}  // namespace tartan_calib::apps
