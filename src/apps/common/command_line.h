@@ -10,6 +10,14 @@ boost::program_options::variables_map parseCommandLine(
     int argc, char** argv, const boost::program_options::options_description& options,
     const boost::program_options::positional_options_description& files = {});
 
+/// Takes over a value that was given.
+template <class T>
+void takeValue(const boost::program_options::variables_map& values, const char* name, T& member) {
+  if (values.count(name) > 0) {
+    member = values[name].as<T>();
+  }
+}
+
 /// Prints the help where it is asked for, by `--help` or an empty command line. The exit code where that is all; nothing
 /// where the program is to run.
 std::optional<int> answerHelp(int argc, const boost::program_options::variables_map& values, const char* help);

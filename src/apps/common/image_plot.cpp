@@ -192,6 +192,12 @@ void ImagePlot::drawField(const ImageField& field, double largest, const std::st
   drawColourBar(largest, label);
 }
 
+cv::Scalar ImagePlot::colourOf(double share) {
+  const cv::Mat1f amount(1, 1, static_cast<float>(share));
+  const auto colour = coloured(amount).at<cv::Vec3b>(0, 0);
+  return {static_cast<double>(colour[0]), static_cast<double>(colour[1]), static_cast<double>(colour[2])};
+}
+
 void ImagePlot::drawColourBar(double largest, const std::string& label) {
   constexpr int kNumSteps = 5;
   const cv::Rect bar(area().br().x + 2 * kGap, kTopMargin, kBarWidth, area().height);

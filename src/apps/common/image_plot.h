@@ -25,6 +25,12 @@ class ImagePlot {
   /// Viridis from 0 to `largest`, grey where the field has no value, with a bar that says so and `label`.
   void drawField(const ImageField& field, double largest, const std::string& label);
 
+  /// The bar alone, for what is drawn in colourOf.
+  void drawColourBar(double largest, const std::string& label);
+
+  /// Viridis at a share of its largest amount.
+  static cv::Scalar colourOf(double share);
+
   /// Lines of equal amounts, each with its number.
   void drawContours(const ImageField& field, const std::vector<double>& levels, double largest);
 
@@ -41,7 +47,6 @@ class ImagePlot {
   cv::Point2d at(const Eigen::Vector2d& px) const;
   cv::Rect area() const;
   void drawTicks();
-  void drawColourBar(double largest, const std::string& label);
   cv::Mat1f resampled(const ImageField& field) const;
 
   int image_width_;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "common/detection.h"
 #include "common/interrupt.h"
 #include "common/output.h"
 #include "common/program.h"
@@ -55,30 +56,6 @@ void throwIfNothing(const std::vector<pipeline::CameraCorners>& cameras, const t
   throw CalibrationError(reasons);
 }
 
-std::vector<pipeline::CameraCorners> detectAll(const std::vector<pipeline::CameraStream>& streams,
-                                               const target::Target& target, const DetectOptions& options,
-                                               ProgressBar& bar) {
-  pipeline::CalibrateOptions detect;
-  detect.detector.min_border_distance_px = options.min_border_distance_px;
-  detect.num_threads = options.num_threads;
-  pipeline::Listener listener;
-  listener.progress = [&bar](const pipeline::Progress& progress) { bar.show(progress.done, progress.total); };
-  std::vector<pipeline::CameraCorners> cameras;
-  for (const pipeline::CameraStream& stream : streams) {
-    const int index = static_cast<int>(cameras.size());
-    std::printf("Looking for the board in %zu images of %s\n", stream.num_images, stream.topic.c_str());
-    std::fflush(stdout);
-    cameras.push_back(pipeline::detectCorners(stream, index, target, detect, listener));
-    bar.clear();
-    for (const std::string& warning : pipeline::detectionWarnings(cameras.back(), index, target)) {
-      printWarning(warning);
-    }
-    std::printf("%s", detectionText(cameras.back(), index, target).c_str());
-    std::fflush(stdout);
-  }
-  return cameras;
-}
-
 void drawAll(const std::vector<pipeline::CameraStream>& streams, const std::vector<pipeline::CameraCorners>& cameras,
              const target::Target& target, const DetectOptions& options, ProgressBar& bar) {
   const std::size_t per_topic = std::max<std::size_t>(1, static_cast<std::size_t>(options.max_pictures) / streams.size());
@@ -115,7 +92,13 @@ void detectCorners(const DetectOptions& options) {
   const std::vector<pipeline::CameraStream> streams =
       openRecording(options.recording, options.topics, options.selection, printWarning);
   ProgressBar bar(isatty(STDOUT_FILENO) != 0);
-  const std::vector<pipeline::CameraCorners> cameras = detectAll(streams, target, options, bar);
+  pipeline::CalibrateOptions detect;
+  detect.detector.min_border_distance_px = options.min_border_distance_px;
+  detect.num_threads = options.num_threads;
+  const auto tell = [&target](int index, const pipeline::CameraCorners& corners) {
+    std::printf("%s", detectionText(corners, index, target).c_str());
+  };
+  const std::vector<pipeline::CameraCorners> cameras = detectAll(streams, target, detect, bar, tell);
   throwIfNothing(cameras, target);
   {
     const UninterruptedSection file_is_written_whole;

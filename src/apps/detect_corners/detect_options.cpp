@@ -47,14 +47,6 @@ po::variables_map parse(int argc, char** argv) {
   return parseCommandLine(argc, argv, options);
 }
 
-/// Takes over a value that was given.
-template <class T>
-void take(const po::variables_map& values, const char* name, T& member) {
-  if (values.count(name) > 0) {
-    member = values[name].as<T>();
-  }
-}
-
 void check(const DetectOptions& options) {
   if (options.recording.empty() || options.target_file.empty() || options.topics.empty()) {
     throw UsageError("--bag, --target and --topics are needed; see --help");
@@ -79,16 +71,16 @@ std::optional<DetectOptions> parseDetectOptions(int argc, char** argv) {
   }
   DetectOptions options;
   options.selection = selectionFrom(values);
-  take(values, "bag", options.recording);
-  take(values, "target", options.target_file);
-  take(values, "topics", options.topics);
-  take(values, "min-border-distance", options.min_border_distance_px);
-  take(values, "threads", options.num_threads);
-  take(values, "pictures", options.picture_folder);
-  take(values, "max-pictures", options.max_pictures);
+  takeValue(values, "bag", options.recording);
+  takeValue(values, "target", options.target_file);
+  takeValue(values, "topics", options.topics);
+  takeValue(values, "min-border-distance", options.min_border_distance_px);
+  takeValue(values, "threads", options.num_threads);
+  takeValue(values, "pictures", options.picture_folder);
+  takeValue(values, "max-pictures", options.max_pictures);
   check(options);
   options.output = recordingPrefix(options.recording) + "-corners.csv";
-  take(values, "output", options.output);
+  takeValue(values, "output", options.output);
   return options;
 }
 
