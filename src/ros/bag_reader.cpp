@@ -1,33 +1,19 @@
 #include "tartan_calib/ros/bag_reader.h"
 
-#include <rosbag/bag.h>
 #include <rosbag/view.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 
-#include "message_head.h"
+#include "shared_bag.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/gray_image.h"
 #include "tartan_calib/ros/image_message.h"
 
 namespace tartan_calib::ros {
 namespace {
-
-constexpr const char* kImageType = "sensor_msgs/Image";
-constexpr const char* kCompressedType = "sensor_msgs/CompressedImage";
-
-/// A bag that several streams read from; rosbag itself may be used by one thread at a time.
-struct SharedBag {
-  std::string path;
-  rosbag::Bag bag;
-  std::mutex mutex;
-};
 
 /// Where the images of one topic are.
 struct TopicIndex {
@@ -39,43 +25,6 @@ struct TopicIndex {
   std::size_t num_unstamped = 0;
   std::string unreadable_reason;  ///< of the first one
 };
-
-void checkIsBag(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
-    throw InputError("bag " + path + " does not exist: check the path");
-  }
-  const std::string magic = "#ROSBAG V";
-  std::string begin(magic.size(), '\0');
-  if (!std::ifstream(path, std::ios::binary).read(&begin[0], static_cast<std::streamsize>(begin.size())) || begin != magic) {
-    throw InputError(path +
-                     " is not a ROS 1 bag, or cannot be read; bags of ROS 2 need to be converted, e.g. by rosbags-convert");
-  }
-}
-
-std::shared_ptr<SharedBag> openShared(const std::string& path) {
-  checkIsBag(path);
-  auto shared = std::make_shared<SharedBag>();
-  shared->path = path;
-  try {
-    shared->bag.open(path, rosbag::bagmode::Read);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError("bag " + path + " has no index, as after an interrupted recording: run 'rosbag reindex " + path + "'");
-  } catch (const std::exception& error) {
-    throw InputError("bag " + path + " is damaged or cut off (" + error.what() + "): run 'rosbag reindex " + path + "'");
-  }
-  return shared;
-}
-
-std::map<std::string, std::string> typesByTopic(const rosbag::Bag& bag) {
-  std::map<std::string, std::string> types;
-  rosbag::View view(bag);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    types[connection->topic] = connection->datatype;
-  }
-  return types;
-}
-
-bool isImageType(const std::string& type) { return type == kImageType || type == kCompressedType; }
 
 std::string imageTopics(const std::map<std::string, std::string>& types) {
   std::string topics;
@@ -109,10 +58,6 @@ void checkEncoding(const TopicIndex& index, const std::string& encoding) {
                      "', which is not supported; convert them to one of " +
                      (index.is_compressed ? supportedFormats() : supportedEncodings()));
   }
-}
-
-MessageHead readHead(const rosbag::MessageInstance& message, bool is_compressed) {
-  return is_compressed ? message.instantiate<CompressedHead>()->head : message.instantiate<ImageHead>()->head;
 }
 
 /// Adds one message to the index of its topic.

@@ -12,7 +12,9 @@ namespace tartan_calib::ros {
 /// The first fields of an image message, read from it without touching its pixels.
 struct MessageHead {
   ::ros::Time stamp;
-  std::string encoding;  ///< `format` of a sensor_msgs/CompressedImage
+  std::string encoding;     ///< `format` of a sensor_msgs/CompressedImage
+  std::uint32_t width = 0;  ///< 0 in a sensor_msgs/CompressedImage
+  std::uint32_t height = 0;
 };
 
 struct ImageHead {
@@ -43,11 +45,9 @@ template <>
 struct Serializer<tartan_calib::ros::ImageHead> {
   template <class Stream>
   static void read(Stream& stream, tartan_calib::ros::ImageHead& message) {
-    std::uint32_t height = 0;
-    std::uint32_t width = 0;
     tartan_calib::ros::readHeader(stream, message.head);
-    stream.next(height);
-    stream.next(width);
+    stream.next(message.head.height);
+    stream.next(message.head.width);
     stream.next(message.head.encoding);
   }
 };

@@ -1,0 +1,165 @@
+#include "tartan_calib/ros/bag_contents.h"
+
+#include <rosbag/view.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "bag_index.h"
+#include "shared_bag.h"
+#include "tartan_calib/error.h"
+#include "tartan_calib/io/gray_image.h"
+#include "tartan_calib/ros/image_message.h"
+
+namespace tartan_calib::ros {
+namespace {
+
+/// Enough for the head of any image: stamp, names of frame and encoding, size.
+constexpr std::size_t kHeadBytes = 4096;
+
+ImageRecord recordOf(const MessageHead& head, std::int64_t received_ns) {
+  return {received_ns, static_cast<std::int64_t>(head.stamp.toNSec()), static_cast<int>(head.width),
+          static_cast<int>(head.height), head.encoding};
+}
+
+template <class Head>
+MessageHead parseHead(std::vector<std::uint8_t> bytes) {
+  Head head;
+  ::ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ::ros::serialization::deserialize(stream, head);
+  return head.head;
+}
+
+::ros::Time timeOf(std::int64_t stamp_ns) { return ::ros::Time().fromNSec(static_cast<std::uint64_t>(stamp_ns)); }
+
+template <class Message>
+cv::Mat loadMessage(SharedBag& shared, const std::string& topic, std::int64_t received_ns) {
+  rosbag::View view(shared.bag, rosbag::TopicQuery(topic), timeOf(received_ns), timeOf(received_ns));
+  if (view.size() == 0) {
+    throw damagedBag(shared.path, "a message is not where it should be");
+  }
+  const boost::shared_ptr<const Message> message = view.begin()->instantiate<Message>();
+  return io::toGray8(grayImage(*message), io::PixelLayout::kGray);
+}
+
+std::function<cv::Mat(std::size_t)> loader(std::shared_ptr<SharedBag> shared, const ImageTopic& topic) {
+  std::vector<std::int64_t> received_ns;
+  for (const ImageRecord& image : topic.images) {
+    received_ns.push_back(image.received_ns);
+  }
+  const auto load =
+      topic.type == kCompressedType ? loadMessage<sensor_msgs::CompressedImage> : loadMessage<sensor_msgs::Image>;
+  return [shared = std::move(shared), name = topic.topic, received_ns = std::move(received_ns), load](std::size_t index) {
+    try {
+      return load(*shared, name, received_ns.at(index));
+    } catch (const std::exception& error) {
+      throw InputError("topic " + name + ", image " + std::to_string(index) + ": " + error.what());
+    }
+  };
+}
+
+/// The image topics of a bag in the making.
+class ImageTopics {
+ public:
+  explicit ImageTopics(const std::map<std::string, std::string>& types) {
+    for (const auto& [topic, type] : types) {
+      if (isImageType(type)) {
+        topics_[topic].topic = topic;
+        topics_[topic].type = type;
+      }
+    }
+  }
+
+  bool has(const std::string& topic) const { return topics_.count(topic) > 0; }
+
+  template <class ReadHead>
+  void add(const std::string& topic, std::int64_t received_ns, const ReadHead& read_head) {
+    ImageTopic& entry = topics_.at(topic);
+    try {
+      entry.images.push_back(recordOf(read_head(entry.type == kCompressedType), received_ns));
+    } catch (const std::exception&) {
+      ++entry.num_unreadable;
+    }
+  }
+
+  std::vector<ImageTopic> finish(const std::shared_ptr<SharedBag>& shared) {
+    std::vector<ImageTopic> finished;
+    for (auto& [name, topic] : topics_) {
+      std::stable_sort(topic.images.begin(), topic.images.end(),
+                       [](const ImageRecord& a, const ImageRecord& b) { return a.received_ns < b.received_ns; });
+      const bool is_compressed = topic.type == kCompressedType;
+      topic.is_supported = std::all_of(topic.images.begin(), topic.images.end(), [&](const ImageRecord& image) {
+        return is_compressed ? isSupportedFormat(image.encoding) : isSupportedEncoding(image.encoding);
+      });
+      topic.load = loader(shared, topic);
+      finished.push_back(std::move(topic));
+    }
+    std::stable_sort(finished.begin(), finished.end(),
+                     [](const ImageTopic& a, const ImageTopic& b) { return a.topic.size() < b.topic.size(); });
+    return finished;
+  }
+
+ private:
+  std::map<std::string, ImageTopic> topics_;
+};
+
+void readHeads(BagIndex& index, ImageTopics& images) {
+  for (const BagIndex::Message& message : index.messages()) {
+    const std::string& topic = index.topics().at(message.connection);
+    if (images.has(topic)) {
+      images.add(topic, message.received_ns, [&](bool is_compressed) {
+        const std::vector<std::uint8_t> bytes = index.beginning(message, kHeadBytes);
+        return is_compressed ? parseHead<CompressedHead>(bytes) : parseHead<ImageHead>(bytes);
+      });
+    }
+  }
+}
+
+/// Where chunks are compressed rosbag unpacks them, one after the other.
+void readHeadsByRosbag(const SharedBag& shared, ImageTopics& images) {
+  rosbag::View view(shared.bag,
+                    [&images](const rosbag::ConnectionInfo* connection) { return images.has(connection->topic); });
+  for (const rosbag::MessageInstance& message : view) {
+    images.add(message.getTopic(), static_cast<std::int64_t>(message.getTime().toNSec()),
+               [&message](bool is_compressed) { return readHead(message, is_compressed); });
+  }
+}
+
+std::vector<OtherTopic> otherTopics(const BagIndex& index, const std::map<std::string, std::string>& types) {
+  std::map<std::string, OtherTopic> topics;
+  for (const BagIndex::Message& message : index.messages()) {
+    const std::string& name = index.topics().at(message.connection);
+    if (isImageType(types.at(name))) {
+      continue;
+    }
+    OtherTopic& topic = topics[name];
+    topic.first_ns = topic.num_messages == 0 ? message.received_ns : std::min(topic.first_ns, message.received_ns);
+    topic.last_ns = std::max(topic.last_ns, message.received_ns);
+    ++topic.num_messages;
+  }
+  std::vector<OtherTopic> list;
+  for (auto& [name, topic] : topics) {
+    topic.topic = name;
+    topic.type = types.at(name);
+    list.push_back(topic);
+  }
+  return list;
+}
+
+}  // namespace
+
+BagContents listBag(const std::string& path) {
+  const std::shared_ptr<SharedBag> shared = openShared(path);
+  const std::map<std::string, std::string> types = typesByTopic(shared->bag);
+  BagIndex index(path);
+  const auto is_compressed = [](const BagIndex::Message& message) { return message.is_compressed; };
+  ImageTopics images(types);
+  if (std::any_of(index.messages().begin(), index.messages().end(), is_compressed)) {
+    readHeadsByRosbag(*shared, images);
+  } else {
+    readHeads(index, images);
+  }
+  return {images.finish(shared), otherTopics(index, types)};
+}
+
+}  // namespace tartan_calib::ros
