@@ -1,0 +1,340 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "inspect_bag/inspection.h"
+#include "inspect_bag/report.h"
+#include "simulate/simulate.h"
+#include "support/temporary_folder.h"
+#include "tartan_calib/io/target_yaml.h"
+
+namespace tartan_calib::apps {
+namespace {
+
+using test_support::TemporaryFolder;
+
+constexpr std::int64_t kStart_ns = 1'600'000'000'000'000'000;
+constexpr std::int64_t kMs = 1'000'000;
+
+/// Images stamped at these times, received 5 ms later.
+std::vector<ros::ImageRecord> imagesAt(const std::vector<std::int64_t>& times_ms) {
+  std::vector<ros::ImageRecord> images;
+  for (const std::int64_t time_ms : times_ms) {
+    images.push_back({kStart_ns + (time_ms + 5) * kMs, kStart_ns + time_ms * kMs, 64, 48, "mono8"});
+  }
+  return images;
+}
+
+std::vector<std::int64_t> stampsEvery(std::int64_t period_ms, int count, std::int64_t first_ms = 0) {
+  std::vector<std::int64_t> stamps_ns;
+  for (int i = 0; i < count; ++i) {
+    stamps_ns.push_back(kStart_ns + (first_ms + i * period_ms) * kMs);
+  }
+  return stamps_ns;
+}
+
+TEST(TopicTiming, FindsGapsAndWhatIsMissingInThem) {
+  const TopicTiming timing = timingOf(imagesAt({0, 50, 101, 150, 300, 350, 400, 450, 550}));
+  EXPECT_TRUE(timing.is_regular);
+  EXPECT_NEAR(timing.period_s, 0.05, 1e-12);
+  EXPECT_NEAR(timing.duration_s, 0.55, 1e-12);
+  EXPECT_EQ(timing.num_gaps, 2U);
+  EXPECT_EQ(timing.num_missing, 3U);
+  EXPECT_NEAR(timing.longest_gap_s, 0.15, 1e-12);
+  EXPECT_NEAR(timing.longest_gap_at_s, 0.15, 1e-12);
+  EXPECT_NEAR(timing.jitter_s, 0.001, 1e-12);
+  EXPECT_NEAR(timing.median_delay_s, 0.005, 1e-12);
+}
+
+TEST(TopicTiming, HasNoGapsWhereImagesComeAtNoRate) {
+  const TopicTiming timing = timingOf(imagesAt({0, 70, 250, 300, 900, 1000, 1700, 2100}));
+  EXPECT_FALSE(timing.is_regular);
+  EXPECT_EQ(timing.num_gaps, 0U);
+}
+
+TEST(TopicTiming, CountsStampsThatAreOutOfOrderRepeatedOrMissing) {
+  std::vector<ros::ImageRecord> images = imagesAt({0, 100, 50, 150, 150, 200});
+  images.back().stamp_ns = 0;
+  const TopicTiming timing = timingOf(images);
+  EXPECT_EQ(timing.num_backwards, 1U);
+  EXPECT_EQ(timing.num_repeated, 1U);
+  EXPECT_EQ(timing.num_unstamped, 1U);
+  EXPECT_NEAR(timing.period_s, 0.05, 1e-12) << "an image without a stamp counts when it was received";
+}
+
+TEST(TopicTiming, OfOneImageIsNothing) {
+  const TopicTiming timing = timingOf(imagesAt({10}));
+  EXPECT_EQ(timing.period_s, 0.0);
+  EXPECT_FALSE(timing.is_regular);
+}
+
+TEST(Synchronization, IsTheOffsetOfTheNearestStamps) {
+  const Synchronization sync = synchronizationOf(stampsEvery(50, 100), stampsEvery(50, 100, 4));
+  EXPECT_NEAR(sync.median_offset_s, 0.004, 1e-12);
+  EXPECT_NEAR(sync.p95_offset_s, 0.004, 1e-12);
+  EXPECT_NEAR(sync.max_offset_s, 0.004, 1e-12);
+  EXPECT_NEAR(sync.half_period_s, 0.025, 1e-12);
+  EXPECT_EQ(sync.within_half_ratio, 1.0);
+  EXPECT_LT(sync.apart_s, 0.0);
+}
+
+TEST(Synchronization, HoldsTheSlowerCameraAgainstTheFaster) {
+  for (const bool is_swapped : {false, true}) {
+    const std::vector<std::int64_t> fast = stampsEvery(10, 500);
+    const std::vector<std::int64_t> slow = stampsEvery(100, 50, 3);
+    const Synchronization sync = is_swapped ? synchronizationOf(slow, fast) : synchronizationOf(fast, slow);
+    EXPECT_NEAR(sync.median_offset_s, is_swapped ? -0.003 : 0.003, 1e-12);
+    EXPECT_NEAR(sync.half_period_s, 0.005, 1e-12);
+    EXPECT_EQ(sync.within_half_ratio, 1.0);
+  }
+}
+
+TEST(Synchronization, CountsImagesWithoutPartner) {
+  const std::vector<std::int64_t> all = stampsEvery(50, 100);
+  std::vector<std::int64_t> part = stampsEvery(50, 60, 1);
+  part.insert(part.end(), {all[90] + kMs, all[95] + kMs});
+  EXPECT_EQ(synchronizationOf(all, part).within_half_ratio, 1.0) << "the camera with fewer images lacks none";
+  const Synchronization apart = synchronizationOf(all, stampsEvery(50, 100, 60'000));
+  EXPECT_EQ(apart.within_half_ratio, 0.0);
+  EXPECT_NEAR(apart.apart_s, 60.0 - 4.95, 1e-9);
+}
+
+TEST(Samples, AreFewAndEvenInTime) {
+  EXPECT_EQ(evenlyInTime(stampsEvery(10, 7), 40).size(), 7U);
+  std::vector<std::int64_t> stamps = stampsEvery(1, 5000);  // a burst, then a long slow part
+  const std::vector<std::int64_t> slow = stampsEvery(100, 950, 5000);
+  stamps.insert(stamps.end(), slow.begin(), slow.end());
+  const std::vector<std::size_t> indices = evenlyInTime(stamps, 40);
+  EXPECT_EQ(indices.size(), 40U);
+  for (std::size_t i = 1; i < indices.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(stamps[indices[i]] - stamps[indices[i - 1]]), 2.5e9, 0.2e9);
+  }
+}
+
+/// A board of squares turned by `angle_deg`, from grey 30 to 220.
+cv::Mat squares(double angle_deg, const cv::Mat& blur_kernel) {
+  constexpr int kSize = 400;
+  constexpr int kFine = 4;  // drawn finer for smooth edges
+  constexpr double kSquare_px = 40.0;
+  cv::Mat fine(kFine * kSize, kFine * kSize, CV_8UC1);
+  const double angle_rad = angle_deg * CV_PI / 180.0;
+  for (int row = 0; row < fine.rows; ++row) {
+    for (int col = 0; col < fine.cols; ++col) {
+      const double x = (col * std::cos(angle_rad) + row * std::sin(angle_rad)) / kFine;
+      const double y = (row * std::cos(angle_rad) - col * std::sin(angle_rad)) / kFine;
+      const auto cell = static_cast<long>(std::floor(x / kSquare_px)) + static_cast<long>(std::floor(y / kSquare_px));
+      fine.at<std::uint8_t>(row, col) = cell % 2 == 0 ? 30 : 220;
+    }
+  }
+  cv::Mat gray;
+  cv::resize(fine, gray, {kSize, kSize}, 0.0, 0.0, cv::INTER_AREA);
+  cv::filter2D(gray, gray, -1, blur_kernel);
+  cv::Mat noise(gray.size(), CV_16SC1);
+  cv::RNG(1).fill(noise, cv::RNG::NORMAL, 0.0, 2.0);
+  cv::add(gray, noise, gray, cv::noArray(), CV_8U);
+  return gray;
+}
+
+cv::Mat defocus(double sigma_px) {
+  const cv::Mat line = cv::getGaussianKernel(31, sigma_px);
+  return line * line.t();
+}
+
+/// Motion over `length_px` along x.
+cv::Mat motion(int length_px) { return cv::Mat(1, length_px, CV_64FC1, cv::Scalar(1.0 / length_px)); }
+
+TEST(ImageQuality, MeasuresTheWidthOfBlurredEdges) {
+  constexpr double kWidthOfSigma = 2.5066282746310002;  // contrast over slope of a Gaussian edge: sqrt(2 pi)
+  for (const double angle_deg : {0.0, 17.0, 45.0}) {
+    for (const double sigma_px : {1.5, 2.0, 3.0}) {
+      const ImageQuality quality = qualityOf(squares(angle_deg, defocus(sigma_px)));
+      ASSERT_TRUE(quality.edge_width_px);
+      EXPECT_NEAR(*quality.edge_width_px, kWidthOfSigma * sigma_px, 0.2 * kWidthOfSigma * sigma_px) << angle_deg;
+    }
+  }
+}
+
+TEST(ImageQuality, SeesMotionInOneDirection) {
+  for (const double angle_deg : {0.0, 17.0}) {
+    const double sharp_px = qualityOf(squares(angle_deg, defocus(0.6))).edge_width_px.value_or(0.0);
+    EXPECT_LT(sharp_px, 3.0);
+    EXPECT_NEAR(qualityOf(squares(angle_deg, motion(9))).edge_width_px.value_or(0.0), 9.0, 2.0);
+  }
+}
+
+TEST(ImageQuality, HasNoWidthWithoutEdges) {
+  cv::Mat noise(300, 300, CV_8UC1);
+  cv::RNG(1).fill(noise, cv::RNG::NORMAL, 100.0, 3.0);
+  EXPECT_FALSE(qualityOf(noise).edge_width_px);
+  EXPECT_FALSE(qualityOf(cv::Mat(10, 10, CV_8UC1, cv::Scalar(0))).edge_width_px);
+}
+
+TEST(ImageQuality, CountsLevels) {
+  cv::Mat gray(100, 100, CV_8UC1, cv::Scalar(100));
+  gray.rowRange(0, 10).setTo(255);
+  gray.rowRange(10, 30).setTo(0);
+  const ImageQuality quality = qualityOf(gray);
+  EXPECT_NEAR(quality.mean_level, 95.5, 1e-9);
+  EXPECT_NEAR(quality.saturated_ratio, 0.1, 1e-12);
+  EXPECT_NEAR(quality.black_ratio, 0.2, 1e-12);
+  EXPECT_EQ(quality.bright_level, 255.0);
+}
+
+TEST(Coverage, ShowsCornersWhereTheyAre) {
+  pipeline::CameraCorners corners;
+  corners.width = 320;
+  corners.height = 240;
+  observation::CameraView image;
+  for (int i = 0; i < 10; ++i) {
+    image.corners.push_back({i, {-0.5 + i, -0.5}});
+  }
+  image.corners.push_back({10, {319.5, 239.5}});
+  corners.images = {image};
+  const std::vector<std::string> picture = coveragePicture(corners);
+  ASSERT_EQ(picture.size(), 12U);
+  EXPECT_EQ(picture.front(), "#" + std::string(31, '.'));
+  EXPECT_EQ(picture.back(), std::string(31, '.') + "+");
+  const std::vector<std::string> empty = emptyThirds(corners);
+  EXPECT_EQ(empty.size(), 7U);
+  EXPECT_EQ(std::count(empty.begin(), empty.end(), "upper left"), 0);
+  EXPECT_EQ(std::count(empty.begin(), empty.end(), "lower right"), 0);
+}
+
+/// Two cameras that lack nothing.
+Inspection goodRig() {
+  Inspection inspection;
+  inspection.recording = "rig.bag";
+  for (const char* topic : {"/cam0/image_raw", "/cam1/image_raw"}) {
+    CameraInspection camera;
+    camera.topic = topic;
+    camera.type = "sensor_msgs/Image";
+    camera.encodings = {"mono8"};
+    camera.sizes = {{{640, 480}, 100}};
+    camera.num_images = 100;
+    camera.timing.period_s = 0.05;
+    camera.timing.duration_s = 5.0;
+    camera.timing.is_regular = true;
+    camera.samples.assign(40, ImageQuality{100.0, 200.0, 0.01, 0.01, 2.0});
+    inspection.cameras.push_back(camera);
+  }
+  inspection.synchronizations = {{1, Synchronization{0.001, 0.001, 0.001, 0.025, 1.0, -5.0}}};
+  return inspection;
+}
+
+TEST(Warnings, AreNoneForAGoodRecording) { EXPECT_TRUE(inspectionWarnings(goodRig()).empty()); }
+
+TEST(Warnings, NameTopicFaultAndRemedy) {
+  struct Case {
+    std::function<void(CameraInspection&, Synchronization&)> spoil;
+    std::vector<std::string> words;
+  };
+  const std::vector<Case> cases = {
+      {[](auto& c, auto&) { c.is_supported = false; }, {"mono8", "another topic"}},
+      {[](auto& c, auto&) { c.num_unreadable = 3; }, {"3 ", "cannot be read"}},
+      {[](auto& c, auto&) { c.num_images = 5; }, {"only 5 images", "20"}},
+      {[](auto& c, auto&) {
+         c.sizes[{320, 240}] = 7;
+       },
+       {"640 x 480", "resolution"}},
+      {[](auto& c, auto&) { c.timing.num_unstamped = 2; }, {"2 images", "header stamp"}},
+      {[](auto& c, auto&) { c.timing.num_backwards = 2; }, {"2 stamps", "earlier"}},
+      {[](auto& c, auto&) { c.timing.num_repeated = 2; }, {"2 images", "stamp of another"}},
+      {[](auto& c, auto&) { c.timing.num_missing = 20; }, {"17 %", "--buffsize"}},
+      {[](auto& c, auto&) { c.timing.median_delay_s = -3.0; }, {"-3.0 s", "clock"}},
+      {[](auto& c, auto&) { std::for_each(c.samples.begin(), c.samples.end(), [](auto& s) { s.saturated_ratio = 0.2; }); },
+       {"saturated", "exposure"}},
+      {[](auto& c, auto&) { std::for_each(c.samples.begin(), c.samples.end(), [](auto& s) { s.bright_level = 60.0; }); },
+       {"dark", "light"}},
+      {[](auto& c, auto&) { std::for_each(c.samples.begin(), c.samples.end(), [](auto& s) { s.edge_width_px = 7.0; }); },
+       {"focus"}},
+      {[](auto& c, auto&) {
+         std::for_each(c.samples.begin(), c.samples.begin() + 20, [](auto& s) { s.edge_width_px = 7.0; });
+       },
+       {"50 %", "motion"}},
+      {[](auto&, auto& s) { s.p95_offset_s = 0.012; }, {"12.0 ms", "trigger"}},
+      {[](auto&, auto& s) { s.within_half_ratio = 0.5; }, {"50 %", "partner"}},
+      {[](auto&, auto& s) { s.apart_s = 60.0; }, {"60.0 s", "clocks"}},
+  };
+  for (const Case& each : cases) {
+    Inspection inspection = goodRig();
+    each.spoil(inspection.cameras[1], inspection.synchronizations[0].second);
+    const std::vector<std::string> warnings = inspectionWarnings(inspection);
+    ASSERT_EQ(warnings.size(), 1U) << each.words.front();
+    EXPECT_EQ(warnings[0].rfind("/cam1/image_raw: ", 0), 0U) << warnings[0];
+    for (const std::string& word : each.words) {
+      EXPECT_NE(warnings[0].find(word), std::string::npos) << "'" << word << "' is not in: " << warnings[0];
+    }
+  }
+}
+
+TEST(Command, NamesTheUsableTopics) {
+  Inspection inspection = goodRig();
+  const std::string start = "rosrun tartan_calib calibrate_cameras --bag rig.bag --target ";
+  EXPECT_EQ(calibrationCommand(inspection, "a b.yaml"),
+            start + "'a b.yaml' --topics /cam0/image_raw /cam1/image_raw --models ds-none ds-none");
+  inspection.cameras[0].left_out = "no board was seen";
+  EXPECT_EQ(calibrationCommand(inspection, ""), start + "board.yaml --topics /cam1/image_raw --models ds-none");
+  inspection.cameras[1].left_out = "no board was seen";
+  EXPECT_EQ(calibrationCommand(inspection, ""), "");
+}
+
+TEST(Command, WidensTheToleranceUpToHalfAPeriodOnly) {
+  Inspection inspection = goodRig();
+  Synchronization& sync = inspection.synchronizations[0].second;
+  sync.max_offset_s = 0.0205;
+  EXPECT_NE(calibrationCommand(inspection, "").find(" --approx-sync 0.022"), std::string::npos);
+  sync.max_offset_s = 0.0249;
+  EXPECT_NE(calibrationCommand(inspection, "").find(" --approx-sync 0.025"), std::string::npos);
+}
+
+TEST(Command, ThinsOutLongRecordingsWhereCamerasStayTogether) {
+  Inspection inspection = goodRig();
+  for (CameraInspection& camera : inspection.cameras) {
+    camera.num_images = 3000;
+    camera.timing.duration_s = 150.0;
+  }
+  EXPECT_NE(calibrationCommand(inspection, "").find(" --bag-freq 2.11"), std::string::npos) << "9.5 periods, not 10";
+  inspection.cameras[0].timing.num_gaps = 1;
+  EXPECT_EQ(calibrationCommand(inspection, "").find("--bag-freq"), std::string::npos);
+}
+
+TEST(Inspection, OfBagAndFolderFindsTheBoard) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> scene = {"--lens",  "pinhole70", "--resolution", "320x256",
+                                          "--views", "8",         "--cameras",    "2"};
+  for (const std::string output : {"--output-bag", "--output-dir"}) {
+    const std::string recording = folder.file(output == "--output-bag" ? "run.bag" : "run");
+    std::vector<std::string> arguments = {output, recording};
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    const std::string base = simulate(*parseSimulateOptions(arguments)).base;
+    const Inspection inspection = inspect(recording, io::loadTarget(base + "-target.yaml").target);
+    ASSERT_EQ(inspection.cameras.size(), 2U);
+    ASSERT_EQ(inspection.synchronizations.size(), 1U);
+    EXPECT_EQ(inspection.synchronizations[0].second.max_offset_s, 0.0);
+    for (const CameraInspection& camera : inspection.cameras) {
+      EXPECT_TRUE(camera.isUsable()) << camera.left_out;
+      EXPECT_EQ(camera.num_images, 8U);
+      EXPECT_EQ(usualSize(camera), ImageSize(320, 256));
+      EXPECT_EQ(camera.samples.size(), 8U);
+      EXPECT_GE(camera.corners.images.size(), 7U);
+      EXPECT_NEAR(camera.timing.period_s, 0.25, 1e-9);
+    }
+    const std::string text = inspectionText(inspection);
+    EXPECT_NE(text.find("/cam1/image_raw"), std::string::npos);
+    EXPECT_NE(text.find("320 x 256"), std::string::npos);
+  }
+}
+
+TEST(Inspection, LeavesOutACameraThatSeesNoBoard) {
+  const TemporaryFolder folder;
+  simulate(*parseSimulateOptions(
+      {"--output-bag", folder.file("run.bag"), "--lens", "pinhole70", "--resolution", "320x256", "--views", "3"}));
+  const Inspection inspection = inspect(folder.file("run.bag"), target::Checkerboard{17, 23, 0.02, 0.02});
+  EXPECT_EQ(inspection.cameras.front().left_out, "no board was seen");
+  EXPECT_EQ(calibrationCommand(inspection, ""), "");
+}
+
+}  // namespace
+}  // namespace tartan_calib::apps
