@@ -14,8 +14,8 @@
 namespace tartan_calib::detection {
 namespace {
 
-target::TagFamily familyOf(const target::AprilGrid& grid) {
-  target::TagFamily family = target::tagFamily(grid.family);
+const target::TagFamily& familyOf(const target::AprilGrid& grid) {
+  const target::TagFamily& family = target::tagFamily(grid.family);
   const auto num_codes = static_cast<int>(family.codes.size());
   if (grid.code_offset < 0 || grid.code_offset + target::numTags(grid) > num_codes) {
     throw InputError("the aprilgrid needs tags " + std::to_string(grid.code_offset) + " to " +

@@ -78,7 +78,7 @@ class BoardRefiner {
         if (!canSample(gray_, at.x(), at.y())) {
           return 0.0;
         }
-        samples.emplace_back(i * j > 0 ? sign_ahead : -sign_ahead, sampleBilinear<std::uint8_t>(gray_, at.x(), at.y()));
+        samples.emplace_back(i * j > 0 ? sign_ahead : -sign_ahead, sampleBilinear(gray_, at.x(), at.y()));
         mean += samples.back().second;
       }
     }

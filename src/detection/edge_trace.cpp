@@ -85,20 +85,20 @@ class EdgeTracer {
   /// The arm of another saddle at which the edge that leaves by `arm` arrives.
   ArmLink follow(int from, int arm) const {
     const Saddle& start = saddles_[static_cast<std::size_t>(from)];
-    const double step_px = start.scale_px;
+    const double step_px = 1.5 * start.scale_px;
     const double max_length_px = gray_.cols + gray_.rows;
     // Seen along an even arm, dark lies clockwise, to the right.
     const double to_light = arm % 2 == 0 ? -1.0 : 1.0;
     Eigen::Vector2d direction = arm_directions_[static_cast<std::size_t>(from)][static_cast<std::size_t>(arm)];
-    Eigen::Vector2d px = start.px + kFirstStep * step_px * direction;
+    Eigen::Vector2d px = start.px + kFirstStep * start.scale_px * direction;
     int unsupported = 0;
-    for (double length_px = kFirstStep * step_px; length_px < max_length_px; length_px += step_px) {
+    for (double length_px = kFirstStep * start.scale_px; length_px < max_length_px; length_px += step_px) {
       const ArmLink link = arrival(from, arm, px, direction);
       if (link.saddle_index >= 0) {
         return link;
       }
       const Eigen::Vector2d light = to_light * Eigen::Vector2d(-direction.y(), direction.x());
-      const auto section = crossSection(px, light, step_px);
+      const auto section = crossSection(px, light, start.scale_px);
       if (!section) {
         return {};
       }
@@ -126,19 +126,19 @@ class EdgeTracer {
     const double from_scale_px = saddles_[static_cast<std::size_t>(from)].scale_px;
     constexpr double kLargestScale_px = 8.0;
     ArmLink best;
-    double best_distance_px = std::numeric_limits<double>::max();
+    double best_distance_px2 = std::numeric_limits<double>::max();
     index_.visitNear(px, kArrivalRadius * std::min(kLargestScale_px, 2.0 * from_scale_px) + kArrivalSlack_px, [&](int i) {
       const Saddle& candidate = saddles_[static_cast<std::size_t>(i)];
-      const double distance_px = (candidate.px - px).norm();
+      const double distance_px2 = (candidate.px - px).squaredNorm();
       const double radius_px = kArrivalRadius * std::max(from_scale_px, candidate.scale_px) + kArrivalSlack_px;
-      if (i == from || distance_px > radius_px || distance_px >= best_distance_px) {
+      if (i == from || distance_px2 > radius_px * radius_px || distance_px2 >= best_distance_px2) {
         return;
       }
       for (const int back_arm : {1 - arm % 2, 3 - arm % 2}) {
         const Eigen::Vector2d& back = arm_directions_[static_cast<std::size_t>(i)][static_cast<std::size_t>(back_arm)];
         if (-back.dot(direction) > kMinArmMatch) {
           best = {i, back_arm};
-          best_distance_px = distance_px;
+          best_distance_px2 = distance_px2;
         }
       }
     });
@@ -153,19 +153,21 @@ class EdgeTracer {
         !canSample(gray_, px.x() + std::abs(reach.x()), px.y() + std::abs(reach.y()))) {
       return std::nullopt;
     }
-    std::array<double, kTaps> gray{};
+    std::array<float, kTaps> gray{};
     for (int k = 0; k < kTaps; ++k) {
       const Eigen::Vector2d at = px + ((k - kMiddle) * spacing_px) * light;
-      gray[static_cast<std::size_t>(k)] = sampleBilinear<std::uint8_t>(gray_, at.x(), at.y());
+      gray[static_cast<std::size_t>(k)] = sampleBilinear(gray_, at.x(), at.y());
     }
-    double slope_sum = 0.0;
-    double moment = 0.0;
+    float slope_sum = 0.0F;
+    float moment = 0.0F;
     for (int k = 0; k + 1 < kTaps; ++k) {
-      const double slope = std::max(0.0, gray[static_cast<std::size_t>(k + 1)] - gray[static_cast<std::size_t>(k)]);
+      const float slope = std::max(0.0F, gray[static_cast<std::size_t>(k + 1)] - gray[static_cast<std::size_t>(k)]);
       slope_sum += slope;
-      moment += slope * (k + 0.5 - kMiddle);
+      moment += slope * (static_cast<float>(k - kMiddle) + 0.5F);
     }
-    return CrossSection{gray[kMiddle + 1] - gray[kMiddle - 1], slope_sum > 0.0 ? spacing_px * moment / slope_sum : 0.0};
+    const float offset = slope_sum > 0.0F ? moment / slope_sum : 0.0F;
+    return CrossSection{static_cast<double>(gray[kMiddle + 1] - gray[kMiddle - 1]),
+                        spacing_px * static_cast<double>(offset)};
   }
 
   const cv::Mat& gray_;

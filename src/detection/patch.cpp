@@ -109,7 +109,8 @@ double Patch::noiseGain(const Eigen::Vector2f& px) const {
   const Cell cell = cellOf(px);
   const auto along = [&](float fraction) {
     const Eigen::Vector4f weights = spline(fraction).matrix();
-    return static_cast<double>(weights.dot(blur_correlation_ * weights));
+    const bool is_blurred = half_blur_.size() > 1;
+    return static_cast<double>(is_blurred ? weights.dot(blur_correlation_ * weights) : weights.squaredNorm());
   };
   return along(cell.fraction.x()) * along(cell.fraction.y());
 }

@@ -49,16 +49,21 @@ Eigen::Vector4f jacobian(const Patch::Sample& plus, const Patch::Sample& minus, 
   return {plus.slope_x - minus.slope_x, plus.slope_y - minus.slope_y, -mean * across_px.x(), -mean * across_px.y()};
 }
 
-/// From every pair, or every `stride`-th one.
-NormalEquations linearize(const Patch& patch, const SampleSet& samples, const Eigen::Vector2d& centre_px,
-                          std::size_t stride) {
+/// What the image shows at the two points of every pair that a linearisation looked at.
+using PairValues = std::vector<std::array<Patch::Sample, 2>>;
+
+/// From every pair, or every `stride`-th one. Fills `values`.
+NormalEquations linearize(const Patch& patch, const SampleSet& samples, const Eigen::Vector2d& centre_px, std::size_t stride,
+                          PairValues& values) {
   NormalEquations normal;
+  values.clear();
   const Eigen::Vector2f centre = centre_px.cast<float>();
   float squared_residuals = 0.0F;
   for (std::size_t k = 0; k < samples.pairs.size(); k += stride) {
     const SamplePair& pair = samples.pairs[k];
     const Patch::Sample plus = patch.at(centre + pair.plus_px);
     const Patch::Sample minus = patch.at(centre + pair.minus_px);
+    values.push_back({plus, minus});
     const float residual = plus.gray - minus.gray;
     const Eigen::Vector4f row = jacobian(plus, minus, pair);
     for (int i = 0; i < kNumUnknowns; ++i) {
@@ -76,20 +81,16 @@ NormalEquations linearize(const Patch& patch, const SampleSet& samples, const Ei
 }
 
 /// Difference of the mean grey values above and below the middle of a window.
-double windowContrast(const Patch& patch, const SampleSet& samples, const Eigen::Vector2f& centre) {
-  std::vector<float> gray;
-  gray.reserve(2 * samples.pairs.size());
+double windowContrast(const PairValues& values) {
+  const auto count = static_cast<float>(2 * values.size());
   float sum = 0.0F;
-  for (const SamplePair& pair : samples.pairs) {
-    for (const Eigen::Vector2f& offset : {pair.plus_px, pair.minus_px}) {
-      gray.push_back(patch.at(centre + offset).gray);
-      sum += gray.back();
-    }
+  for (const auto& [plus, minus] : values) {
+    sum += plus.gray + minus.gray;
   }
-  const auto count = static_cast<float>(gray.size());
+  const float mean = sum / count;
   float deviation = 0.0F;
-  for (const float value : gray) {
-    deviation += std::abs(value - sum / count);
+  for (const auto& [plus, minus] : values) {
+    deviation += std::abs(plus.gray - mean) + std::abs(minus.gray - mean);
   }
   return static_cast<double>(2.0F * deviation / count);
 }
@@ -102,19 +103,21 @@ struct Attempt {
   double contrast = 0.0;  ///< [grey levels]
 };
 
-/// The result of the last linearisation. The centre is a linear function of the residuals, these of the samples, and these
-/// of the pixels; the noise of the pixels, as the residuals show it, is carried through all three.
-Attempt conclude(const Patch& patch, const SampleSet& samples, const NormalEquations& normal,
+/// The result of the last linearisation, whose last step is too short to change `values`. The centre is a linear function of
+/// the residuals, these of the samples, and these of the pixels; the noise of the pixels, as the residuals show it, is
+/// carried through all three.
+Attempt conclude(const Patch& patch, const SampleSet& samples, const NormalEquations& normal, const PairValues& values,
                  const Eigen::Vector2d& centre_px) {
   const Eigen::Vector2f centre = centre_px.cast<float>();
   const Eigen::Matrix4d inverse = normal.matrix.cast<double>().inverse();
   const Eigen::Matrix<float, 2, 4> gain = inverse.topRows<2>().cast<float>();
   Patch::PixelWeights weights(patch);
   double residual_gain = 0.0;  // of the sum of squared residuals, where the variance of a pixel is 1
-  for (const SamplePair& pair : samples.pairs) {
+  for (std::size_t k = 0; k < samples.pairs.size(); ++k) {
+    const SamplePair& pair = samples.pairs[k];
     const Eigen::Vector2f plus_px = centre + pair.plus_px;
     const Eigen::Vector2f minus_px = centre + pair.minus_px;
-    const Eigen::Vector2f factor = gain * jacobian(patch.at(plus_px), patch.at(minus_px), pair);
+    const Eigen::Vector2f factor = gain * jacobian(values[k][0], values[k][1], pair);
     weights.add(plus_px, factor);
     weights.add(minus_px, -factor);
     residual_gain += patch.noiseGain(plus_px) + patch.noiseGain(minus_px);
@@ -127,7 +130,7 @@ Attempt conclude(const Patch& patch, const SampleSet& samples, const NormalEquat
   attempt.variance = std::max(kRoundingVariance, left / residual_gain * independent / attempt.freedom);
   attempt.corner.px = centre_px;
   attempt.corner.cov_px2 = attempt.variance * weights.covariance();
-  attempt.contrast = windowContrast(patch, samples, centre);
+  attempt.contrast = windowContrast(values);
   attempt.corner.residual_ratio = std::sqrt(left / num_pairs) / std::max(attempt.contrast, 1e-6);
   return attempt;
 }
@@ -162,13 +165,14 @@ class SymmetryRefinement {
     const double blur_px = options_.scale_px > 1.0 ? kBlur * options_.scale_px : 0.0;
     const Patch patch(gray_, start_px_, samples.reach_px + options_.max_shift_px, blur_px);
     NormalEquations normal;
+    PairValues values;
     double step_px = std::numeric_limits<double>::max();
     bool is_coarse = samples.pairs.size() >= kManyPairs;
     for (int i = 0; i < options_.max_iterations && step_px > kConvergedStep_px; ++i) {
       if (samples.pairs.size() < kMinPairs || !patch.holds(centre_px, samples.reach_px)) {
         return std::nullopt;
       }
-      normal = linearize(patch, samples, centre_px, is_coarse ? kCoarseStride : 1);
+      normal = linearize(patch, samples, centre_px, is_coarse ? kCoarseStride : 1, values);
       const Eigen::Vector2d step = normal.solution.head<2>();
       const bool was_coarse = is_coarse;
       is_coarse = is_coarse && step.norm() > kFineStep_px;
@@ -180,10 +184,11 @@ class SymmetryRefinement {
       if ((centre_px - selected_px).norm() > kReselectStep_px) {
         samples = window_.samples(share, centre_px, gray_.size());
         selected_px = centre_px;
+        step_px = std::numeric_limits<double>::max();
       }
     }
     const bool has_settled = step_px <= kAcceptedStep_px && patch.holds(centre_px, samples.reach_px);
-    return has_settled ? std::make_optional(conclude(patch, samples, normal, centre_px)) : std::nullopt;
+    return has_settled ? std::make_optional(conclude(patch, samples, normal, values, centre_px)) : std::nullopt;
   }
 
   /// The largest window whose noise is that of all smaller ones, as far as it can be told.

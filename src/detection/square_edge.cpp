@@ -41,8 +41,7 @@ struct Curve {
 
 bool hasContrast(const cv::Mat& gray, const Eigen::Vector2d& dark, const Eigen::Vector2d& light, double min_contrast) {
   return canSample(gray, dark.x(), dark.y()) && canSample(gray, light.x(), light.y()) &&
-         sampleBilinear<std::uint8_t>(gray, light.x(), light.y()) - sampleBilinear<std::uint8_t>(gray, dark.x(), dark.y()) >=
-             min_contrast;
+         sampleBilinear(gray, light.x(), light.y()) - sampleBilinear(gray, dark.x(), dark.y()) >= min_contrast;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ double TagPayload::correlation(const cv::Mat& gray, const BoardMap& map, int tag
       const Eigen::Vector2d at = px ? Eigen::Vector2d(*px + shift_px) : Eigen::Vector2d::Constant(-1.0);
       if (canSample(gray, at.x(), at.y())) {
         const bool white = target::isWhiteCell(family_, grid_.code_offset + tag_index, row, col);
-        correlation.add(sampleBilinear<std::uint8_t>(gray, at.x(), at.y()), white ? 1.0 : -1.0);
+        correlation.add(sampleBilinear(gray, at.x(), at.y()), white ? 1.0 : -1.0);
       }
     }
   }

@@ -20,7 +20,7 @@ class TagPayload {
 
  private:
   target::AprilGrid grid_;
-  target::TagFamily family_;
+  const target::TagFamily& family_;
   std::vector<Eigen::Vector3d> corner_points_;
 };
 

@@ -52,7 +52,7 @@ std::optional<double> sampleAt(const cv::Mat& gray, const TagMap& map, const Eig
   if (!canSample(gray, px.x(), px.y())) {
     return std::nullopt;
   }
-  return sampleBilinear<std::uint8_t>(gray, px.x(), px.y());
+  return sampleBilinear(gray, px.x(), px.y());
 }
 
 /// Samples along a square around the middle of the tag, `inset` inside its outline (outside where negative).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bilinear.h"
 
@@ -17,7 +18,7 @@ constexpr double kMaxArmDisagreement_rad = 0.3;  ///< between a ring and the nex
 constexpr double kMinWedge_rad = 0.25;           ///< narrower wedges are lines
 constexpr double kMaxWedgeImbalance = 0.6;       ///< between wedges of one shade, in units of the contrast
 
-using Ring = std::array<double, kRingSamples>;
+using Ring = std::array<float, kRingSamples>;
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
 
@@ -33,52 +34,45 @@ Ring sampleRing(const cv::Mat& gray, const Eigen::Vector2d& px, double radius_px
   }();
   Ring raw{};
   for (std::size_t k = 0; k < kRingSamples; ++k) {
-    raw[k] =
-        sampleBilinear<std::uint8_t>(gray, px.x() + radius_px * directions[k].x(), px.y() + radius_px * directions[k].y());
+    raw[k] = sampleBilinear(gray, px.x() + radius_px * directions[k].x(), px.y() + radius_px * directions[k].y());
   }
   Ring smooth{};
   for (std::size_t k = 0; k < kRingSamples; ++k) {
-    smooth[k] = 0.25 * (raw[(k + kRingSamples - 1) % kRingSamples] + 2.0 * raw[k] + raw[(k + 1) % kRingSamples]);
+    smooth[k] = 0.25F * (raw[(k + kRingSamples - 1) % kRingSamples] + 2.0F * raw[k] + raw[(k + 1) % kRingSamples]);
   }
   return smooth;
 }
 
 /// Grey value half-way between the dark and the light part of the ring.
-double midGray(const Ring& ring) {
-  double mean = 0.0;
-  for (const double value : ring) {
-    mean += value / kRingSamples;
+float midGray(const Ring& ring) {
+  const float sum = std::accumulate(ring.begin(), ring.end(), 0.0F);
+  const float mean = sum / kRingSamples;
+  float light = 0.0F;
+  float num_light = 0.0F;
+  for (const float value : ring) {
+    light += value > mean ? value : 0.0F;
+    num_light += value > mean ? 1.0F : 0.0F;
   }
-  double light = 0.0;
-  double dark = 0.0;
-  int num_light = 0;
-  for (const double value : ring) {
-    const bool is_light = value > mean;
-    num_light += is_light ? 1 : 0;
-    (is_light ? light : dark) += value;
-  }
-  if (num_light == 0 || num_light == kRingSamples) {
-    return mean;
-  }
-  return 0.5 * (light / num_light + dark / (kRingSamples - num_light));
+  const float num_dark = kRingSamples - num_light;
+  return num_light == 0.0F || num_dark == 0.0F ? mean : 0.5F * (light / num_light + (sum - light) / num_dark);
 }
 
 /// Angles where the ring crosses `mid`, the first from light to dark; nothing unless there are four.
-std::optional<std::array<double, 4>> crossings(const Ring& ring, double mid) {
+std::optional<std::array<double, 4>> crossings(const Ring& ring, float mid) {
   std::array<double, 4> angles{};
   std::size_t count = 0;
   bool first_darkens = false;
   for (std::size_t k = 0; k < kRingSamples; ++k) {
-    const double here = ring[k] - mid;
-    const double next = ring[(k + 1) % kRingSamples] - mid;
-    if ((here > 0.0) == (next > 0.0)) {
+    const float here = ring[k] - mid;
+    const float next = ring[(k + 1) % kRingSamples] - mid;
+    if ((here > 0.0F) == (next > 0.0F)) {
       continue;
     }
     if (count == 4) {
       return std::nullopt;
     }
-    first_darkens = count == 0 ? here > 0.0 : first_darkens;
-    angles[count++] = (static_cast<double>(k) + here / (here - next)) * 2.0 * kPi / kRingSamples;
+    first_darkens = count == 0 ? here > 0.0F : first_darkens;
+    angles[count++] = (static_cast<double>(k) + static_cast<double>(here / (here - next))) * 2.0 * kPi / kRingSamples;
   }
   if (count != 4) {
     return std::nullopt;
@@ -91,18 +85,18 @@ std::optional<std::array<double, 4>> crossings(const Ring& ring, double mid) {
 }
 
 /// Extreme grey value, relative to `mid`, of the wedge between two angles.
-double wedgePeak(const Ring& ring, double mid, double from_rad, double to_rad) {
+double wedgePeak(const Ring& ring, float mid, double from_rad, double to_rad) {
   const auto index = [](double angle_rad) { return angle_rad * kRingSamples / (2.0 * kPi); };
-  double peak = 0.0;
+  float peak = 0.0F;
   for (int k = static_cast<int>(std::ceil(index(from_rad))); k <= static_cast<int>(index(to_rad)); ++k) {
     peak = std::max(peak, std::abs(ring[static_cast<std::size_t>(k) % kRingSamples] - mid));
   }
-  return peak;
+  return static_cast<double>(peak);
 }
 
 /// The four wedges of a ring, if it has two dark and two light ones, opposite each other and alike.
 std::optional<Wedges> wedgesOf(const Ring& ring) {
-  const double mid = midGray(ring);
+  const float mid = midGray(ring);
   const auto arms = crossings(ring, mid);
   if (!arms) {
     return std::nullopt;

@@ -80,7 +80,7 @@ std::optional<XCornerMatch> matchXCorner(const cv::Mat& gray, const XCornerTempl
   for (std::size_t i = 0; i < corner.offsets_px.size(); ++i) {
     const Eigen::Vector2d at = px + corner.offsets_px[i];
     if (canSample(gray, at.x(), at.y())) {
-      values.add(corner.pattern[i], sampleBilinear<std::uint8_t>(gray, at.x(), at.y()));
+      values.add(corner.pattern[i], sampleBilinear(gray, at.x(), at.y()));
     }
   }
   if (values.count() < kMinSeenShare * static_cast<double>(corner.offsets_px.size())) {

@@ -6,27 +6,13 @@
 #include <apriltag/tag36h10.h>
 #include <apriltag/tag36h11.h>
 
-#include <functional>
 #include <map>
-#include <memory>
 
 #include "tartan_calib/error.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::target {
 namespace {
-
-using FamilyPointer = std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)>;
-
-/// Families whose payload is a full square inside a black border, as the AprilGrid needs.
-const std::map<std::string, std::function<FamilyPointer()>>& knownFamilies() {
-  static const std::map<std::string, std::function<FamilyPointer()>> families = {
-      {"t16h5", [] { return FamilyPointer(tag16h5_create(), tag16h5_destroy); }},
-      {"t25h9", [] { return FamilyPointer(tag25h9_create(), tag25h9_destroy); }},
-      {"t36h10", [] { return FamilyPointer(tag36h10_create(), tag36h10_destroy); }},
-      {"t36h11", [] { return FamilyPointer(tag36h11_create(), tag36h11_destroy); }},
-  };
-  return families;
-}
 
 /// libapriltag orders bits by position tables (a spiral); this reorders them row by row.
 std::uint64_t rowMajorCode(const apriltag_family_t& family, std::uint64_t code, int payload_cells) {
@@ -40,6 +26,34 @@ std::uint64_t rowMajorCode(const apriltag_family_t& family, std::uint64_t code, 
   return row_major;
 }
 
+TagFamily readFamily(const std::string& name, const apriltag_family_t& table) {
+  TagFamily family;
+  family.name = name;
+  family.payload_cells = table.width_at_border - 2;  // libapriltag's families have a border of one cell
+  family.min_hamming_distance = static_cast<int>(table.h);
+  for (std::uint32_t id = 0; id < table.ncodes; ++id) {
+    family.codes.push_back(rowMajorCode(table, table.codes[id], family.payload_cells));
+  }
+  return family;
+}
+
+/// Families whose payload is a full square inside a black border, as the AprilGrid needs.
+const std::map<std::string, TagFamily>& knownFamilies() {
+  static const std::map<std::string, TagFamily> families = [] {
+    std::map<std::string, TagFamily> read;
+    const auto add = [&read](const std::string& name, apriltag_family_t* table, void (*destroy)(apriltag_family_t*)) {
+      read[name] = readFamily(name, *table);
+      destroy(table);
+    };
+    add("t16h5", tag16h5_create(), tag16h5_destroy);
+    add("t25h9", tag25h9_create(), tag25h9_destroy);
+    add("t36h10", tag36h10_create(), tag36h10_destroy);
+    add("t36h11", tag36h11_create(), tag36h11_destroy);
+    return read;
+  }();
+  return families;
+}
+
 }  // namespace
 
 std::vector<std::string> tagFamilyNames() {
@@ -50,24 +64,12 @@ std::vector<std::string> tagFamilyNames() {
   return names;
 }
 
-TagFamily tagFamily(const std::string& name) {
+const TagFamily& tagFamily(const std::string& name) {
   const auto found = knownFamilies().find(name);
   if (found == knownFamilies().end()) {
-    std::string list;
-    for (const std::string& known : tagFamilyNames()) {
-      list += (list.empty() ? "" : ", ") + known;
-    }
-    throw InputError("unknown tag family '" + name + "'; known families: " + list);
+    throw InputError("unknown tag family '" + name + "'; known families: " + joined(tagFamilyNames()));
   }
-  const FamilyPointer table = found->second();
-  TagFamily family;
-  family.name = name;
-  family.payload_cells = table->width_at_border - 2;  // libapriltag's families have a border of one cell
-  family.min_hamming_distance = static_cast<int>(table->h);
-  for (std::uint32_t id = 0; id < table->ncodes; ++id) {
-    family.codes.push_back(rowMajorCode(*table, table->codes[id], family.payload_cells));
-  }
-  return family;
+  return found->second;
 }
 
 bool isWhiteCell(const TagFamily& family, int tag_id, int row, int col) {

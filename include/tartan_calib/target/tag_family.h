@@ -19,8 +19,8 @@ struct TagFamily {
 /// Names that tagFamily accepts.
 std::vector<std::string> tagFamilyNames();
 
-/// The family's table, taken from libapriltag. Throws InputError that lists the known names.
-TagFamily tagFamily(const std::string& name);
+/// The family's table, taken from libapriltag once. Throws InputError that lists the known names.
+const TagFamily& tagFamily(const std::string& name);
 
 /// True where cell (row, col), counted from the top left of the payload as printed, is white.
 bool isWhiteCell(const TagFamily& family, int tag_id, int row, int col);
