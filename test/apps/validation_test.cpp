@@ -129,6 +129,29 @@ TEST(Validation, CamerasThatNeverSeeTheBoardTogetherLeaveExtrinsicsUntested) {
   EXPECT_TRUE(mentions(judge(validation), "extrinsics are not tested"));
 }
 
+TEST(Validation, ALensThatIsWrongAtTheRimIsToldSo) {
+  const StereoRecording recording;
+  calibration::Rig bent = recording.scene.rig;
+  camera::CameraModel& model = bent.cameras[0].camera.model;
+  Eigen::VectorXd parameters = camera::parameters(model);
+  parameters(1) += 0.05;  // alpha: the same scale in the middle
+  model = camera::withParameters(model, parameters);
+  const Judgement judgement = judge(recording.validated(bent));
+  EXPECT_TRUE(mentions(judgement, "cam0: largest from"));
+  EXPECT_FALSE(mentions(judgement, "cam1: largest from"));
+}
+
+TEST(Validation, ViewsAndCornersThatTheCalibrationCannotExplainAreTold) {
+  StereoRecording recording;
+  for (std::size_t i = 0; i < 5; ++i) {
+    recording.corners[0].images[i].corners.resize(3);
+    recording.corners[1].images.erase(recording.corners[1].images.begin());
+  }
+  const Validation validation = recording.validated(recording.scene.rig);
+  EXPECT_GT(validation.num_unexplained, 0U);
+  EXPECT_TRUE(mentions(judge(validation), "no pose of the board explains"));
+}
+
 TEST(ValidationText, HasErrorsByCameraAndBandWorstImagesAndVerdict) {
   const StereoRecording recording;
   Validation validation = recording.validated(recording.scene.rig);

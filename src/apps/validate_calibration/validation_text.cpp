@@ -17,11 +17,13 @@ constexpr long long kNsPerSecond = 1'000'000'000;
 /// Another recording is sharper or more blurred than the calibration's by so much at most, where both were made with care.
 constexpr double kUsualRatio = 1.5;
 constexpr double kFailRatio = 3.0;
-/// With these many corners the rms of a band is known to a few percent.
-constexpr int kBandCorners = 100;
+/// A band of angles is told of where its rms is so many times the camera's, over three tags' corners at least.
+constexpr double kBandRatio = 2.0;
+constexpr int kBandCorners = 12;
 constexpr int kFewViews = 10;
-/// Share of corners that a good detector gets wrong at most.
-constexpr double kManyWrong = 0.02;
+/// Share of corners that are wrong with a good detector, or without an image with a usable lens, at most; and of views
+/// without a pose.
+constexpr double kManyLost = 0.02;
 
 std::string summaryText(const ErrorSummary& errors) {
   return format("%9d %8.4f %8.4f %8.4f %8.4f", errors.num_corners, errors.rms_px, errors.median_px, errors.percentile95_px,
@@ -84,6 +86,21 @@ Fit fitOf(const CameraValidation& camera) {
   return ratio > kFailRatio ? Fit::kFails : ratio > kUsualRatio ? Fit::kDoubtful : Fit::kHolds;
 }
 
+void addWorstBand(const CameraErrors& errors, const std::string& name, std::vector<std::string>& reasons) {
+  const calibration::ErrorBand* worst = nullptr;
+  for (const calibration::ErrorBand& band : errors.bands) {
+    const bool is_known = band.errors.num_corners >= kBandCorners;
+    if (is_known && (worst == nullptr || band.errors.rms_px > worst->errors.rms_px)) {
+      worst = &band;
+    }
+  }
+  if (worst != nullptr && worst->errors.rms_px > kBandRatio * errors.errors.rms_px) {
+    reasons.push_back(format("%s: largest from %.0f to %.0f degrees from the axis: rms %.4f px of %d corners", name.c_str(),
+                             worst->from_rad * kDegreesPerRadian, worst->to_rad * kDegreesPerRadian, worst->errors.rms_px,
+                             worst->errors.num_corners));
+  }
+}
+
 void addReasons(const CameraValidation& camera, const std::string& name, std::vector<std::string>& reasons) {
   const CameraErrors& together = camera.together;
   const double rms_px = together.errors.rms_px;
@@ -97,18 +114,15 @@ void addReasons(const CameraValidation& camera, const std::string& name, std::ve
                "cameras are not triggered together",
                name.c_str(), rms_px, camera.alone.errors.rms_px));
   }
-  const auto worst = std::max_element(together.bands.begin(), together.bands.end(), [](const auto& a, const auto& b) {
-    const auto known = [](const ErrorSummary& errors) { return errors.num_corners >= kBandCorners ? errors.rms_px : 0.0; };
-    return known(a.errors) < known(b.errors);
-  });
-  if (worst != together.bands.end() && worst->errors.num_corners >= kBandCorners &&
-      worst->errors.rms_px > kUsualRatio * rms_px) {
-    reasons.push_back(format("%s: largest from %.0f to %.0f degrees from the axis, rms %.4f px", name.c_str(),
-                             worst->from_rad * kDegreesPerRadian, worst->to_rad * kDegreesPerRadian, worst->errors.rms_px));
-  }
-  if (together.num_wrong > kManyWrong * (together.num_wrong + together.errors.num_corners)) {
+  addWorstBand(together, name, reasons);
+  const double num_lost = kManyLost * (together.num_wrong + together.num_unprojectable + together.errors.num_corners);
+  if (together.num_wrong > num_lost) {
     reasons.push_back(format("%s: %d corners do not fit those beside them: is the board flat, and the shutter global?",
                              name.c_str(), together.num_wrong));
+  }
+  if (together.num_unprojectable > num_lost) {
+    reasons.push_back(
+        format("%s: the model has no image for %d corners that were seen", name.c_str(), together.num_unprojectable));
   }
   if (together.num_images < kFewViews) {
     reasons.push_back(format("%s: only %d images show the board: little is tested", name.c_str(), together.num_images));
@@ -143,6 +157,10 @@ Judgement judge(const Validation& validation) {
       judgement.fit = fit;
     }
     addReasons(validation.cameras[i], cameraName(i), judgement.reasons);
+  }
+  if (static_cast<double>(validation.num_unexplained) > kManyLost * static_cast<double>(validation.num_views)) {
+    judgement.reasons.push_back(
+        format("no pose of the board explains %zu of %zu views", validation.num_unexplained, validation.num_views));
   }
   if (validation.cameras.size() > 1 && validation.num_joint == 0) {
     judgement.reasons.emplace_back(
