@@ -113,7 +113,7 @@ class NamesInThePages(unittest.TestCase):
     def helps():
         """What programs and scripts say of their flags."""
         for program in PROGRAMS.iterdir():
-            if program.is_file():
+            if program.is_file() and not program.name.endswith("_node"):  # these take ROS parameters
                 yield run(program, "--help").stdout
         for script in (SOURCE / "scripts").iterdir():
             if script.is_file():
