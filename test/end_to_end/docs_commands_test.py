@@ -57,6 +57,7 @@ class CommandsOfThePages(unittest.TestCase):
         folder = cls.recordings.path
         cls.recordings.simulate("rig", "--cameras", 2, "--views", 16, "--resolution", "400x320")
         shutil.copy(folder / "rig-target.yaml", folder / "april_6x6.yaml")
+        (folder / "second.bag").symlink_to("rig.bag")
         for name in ("rig", "other", "second"):
             shutil.copy(folder / "rig-truth-camchain.yaml", folder / f"{name}-camchain.yaml")
         (folder / "my_ws/src").mkdir(parents=True)
