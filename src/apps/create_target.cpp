@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "common/interrupt.h"
 #include "common/program.h"
 
 namespace {
@@ -14,6 +15,7 @@ int run(int argc, char** argv) {
     std::cout << createTargetHelp();
     return argc == 1 ? kWrongUsage : kSuccess;
   }
+  installInterruptHandler();
   std::cout << createTarget(*options);
   return kSuccess;
 }

@@ -269,6 +269,58 @@ TEST(Warnings, NameTopicFaultAndRemedy) {
   }
 }
 
+TEST(Warnings, SayWhatIsWrongWithTheBoard) {
+  Inspection inspection = goodRig();
+  inspection.target = target::AprilGrid{};
+  for (CameraInspection& camera : inspection.cameras) {  // a corner in every third of every image
+    camera.corners.width = 640;
+    camera.corners.height = 480;
+    camera.corners.num_images = 40;
+    camera.corners.counts.tags = 360;
+    observation::CameraView image;
+    for (const double y_px : {80.0, 240.0, 400.0}) {
+      for (const double x_px : {100.0, 300.0, 500.0}) {
+        image.corners.push_back({static_cast<int>(image.corners.size()), {x_px, y_px}});
+      }
+    }
+    camera.corners.images.assign(40, image);
+  }
+  EXPECT_TRUE(inspectionWarnings(inspection).empty());
+  struct Case {
+    std::function<void(pipeline::CameraCorners&)> spoil;
+    std::string words;
+  };
+  const std::vector<Case> cases = {
+      {[](auto& c) { c.images.clear(); }, "no board was seen"},
+      {[](auto& c) { c.images.resize(10); }, "only 10 of 40"},
+      {[](auto& c) {
+         for (auto& image : c.images) {
+           image.corners.pop_back();
+         }
+       },
+       "no corners in the lower right of"},
+      {[](auto& c) { c.counts.mirrored_tags = 3; }, "mirrored"},
+      {[](auto& c) { c.counts.other_border_tags = 500; }, "tagBorder: 1"},
+      {[](auto& c) {
+         c.images.clear();
+         c.counts.other_sizes[{5, 4}] = 30;
+       },
+       "5 rows and 4 columns"},
+      {[](auto& c) {
+         c.counts.other_sizes[{5, 4}] = 90;
+       },
+       "5 rows and 4 columns"},
+  };
+  for (const Case& each : cases) {
+    Inspection spoilt = inspection;
+    each.spoil(spoilt.cameras[1].corners);
+    const std::vector<std::string> warnings = inspectionWarnings(spoilt);
+    ASSERT_EQ(warnings.size(), 1U) << each.words;
+    EXPECT_EQ(warnings[0].rfind("/cam1/image_raw: ", 0), 0U) << warnings[0];
+    EXPECT_NE(warnings[0].find(each.words), std::string::npos) << warnings[0];
+  }
+}
+
 TEST(Command, NamesTheUsableTopics) {
   Inspection inspection = goodRig();
   const std::string start = "rosrun tartan_calib calibrate_cameras --bag rig.bag --target ";

@@ -64,8 +64,10 @@ std::string stampText(const CameraInspection& camera) {
   std::string text = timing.num_backwards == 0 ? "in order" : format("%zu go back in time", timing.num_backwards);
   text += timing.num_repeated == 0 ? "" : format(", %zu repeated", timing.num_repeated);
   text += timing.num_unstamped == 0 ? "" : format(", %zu missing", timing.num_unstamped);
-  return text + format("; received %.1f ms later (%.1f to %.1f)", kMsPerSecond * timing.median_delay_s,
-                       kMsPerSecond * timing.min_delay_s, kMsPerSecond * timing.max_delay_s);
+  const bool is_recorded_live = timing.min_delay_s != 0.0 || timing.max_delay_s != 0.0;
+  return text + (is_recorded_live ? format("; received %.1f ms later (%.1f to %.1f)", kMsPerSecond * timing.median_delay_s,
+                                           kMsPerSecond * timing.min_delay_s, kMsPerSecond * timing.max_delay_s)
+                                  : "");
 }
 
 std::string lightText(const std::vector<ImageQuality>& samples) {

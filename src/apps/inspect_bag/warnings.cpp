@@ -20,7 +20,7 @@ constexpr double kClockDifference_s = 1.0;
 /// A board that is moved by hand moves by a pixel or more in this time.
 constexpr double kLooseSync_s = 0.003;
 constexpr double kFewPartners_ratio = 0.9;
-constexpr double kManySaturated_ratio = 0.05;
+constexpr double kManySaturated_ratio = 0.03;
 constexpr double kDarkLevel = 90.0;  ///< white paper should be well above
 constexpr double kBlurredWidth_px = 4.0;
 constexpr double kManyBlurred_ratio = 0.25;
@@ -59,7 +59,8 @@ class CameraWarnings {
           (camera_.unreadable_reason.empty() ? "" : " (first: " + camera_.unreadable_reason + ")"));
     }
     if (camera_.num_images < kFewImages) {
-      add(format("only %zu images: record 20 views or more, 50 to 100 for a wide lens", camera_.num_images));
+      add(format("only %zu image%s: record 20 views or more, 50 to 100 for a wide lens", camera_.num_images,
+                 camera_.num_images == 1 ? "" : "s"));
     }
     if (camera_.sizes.size() > 1) {
       const ImageSize size = usualSize(camera_);
@@ -129,16 +130,15 @@ class CameraWarnings {
   void checkBoard() {
     const pipeline::CameraCorners& corners = camera_.corners;
     if (corners.images.empty()) {
-      add("no board was seen in any of the images that were looked at: check the target file, light, focus and distance");
+      add(pipeline::otherSizeNote(corners, *target_)
+              .value_or("no board was seen in any of the images that were looked at: check the target file, light, focus "
+                        "and distance"));
     } else if (static_cast<double>(corners.images.size()) < kFewBoards_ratio * static_cast<double>(corners.num_images)) {
       add(format("the board was seen in only %zu of %zu images", corners.images.size(), corners.num_images));
     }
     const std::vector<std::string> empty = emptyThirds(corners);
     if (!corners.images.empty() && !empty.empty()) {
       add("no corners in the " + joined(empty) + " of the image: move the board there, or the lens is extrapolated");
-    }
-    if (const auto note = pipeline::otherSizeNote(corners, *target_)) {
-      add(*note);
     }
     for (const std::string& warning : pipeline::detectionWarnings(corners, 0, *target_)) {
       add(warning.substr(warning.find(": ") + 2));
