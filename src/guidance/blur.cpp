@@ -13,8 +13,8 @@ namespace {
 constexpr double kReach_ratio = 0.18;
 constexpr double kMinReach_px = 3.0;
 constexpr double kMaxReach_px = 16.0;
-constexpr double kMinEdge_px = 12.0;      ///< shorter ones are blurred into each other
-constexpr double kMinContrast_grey = 30;  ///< below it, paper without an edge
+constexpr double kMinEdge_px = 12.0;  ///< shorter ones are blurred into each other
+constexpr double kMinContrast = 30;   ///< [grey levels] below it, paper without an edge
 constexpr std::size_t kMinEdges = 3;
 constexpr double kStep_px = 0.5;
 
@@ -55,7 +55,7 @@ std::optional<double> blurAcross(const cv::Mat& gray, const Eigen::Vector2d& fro
     lowest = std::min({lowest, before, after});
     highest = std::max({highest, before, after});
   }
-  if (highest - lowest < kMinContrast_grey) {
+  if (highest - lowest < kMinContrast) {
     return std::nullopt;
   }
   return (highest - lowest) / (steepest * std::sqrt(2.0 * M_PI));  // the slope in the middle of a Gaussian-blurred step

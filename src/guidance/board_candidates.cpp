@@ -190,8 +190,8 @@ std::vector<std::vector<Eigen::Vector2d>> boardOutline(const calibration::RigCam
                                                        const std::vector<Eigen::Vector3d>& target_points,
                                                        const Rigid3& T_rig_target) {
   constexpr int kPointsPerSide = 16;
-  const Eigen::Vector3d low = target_points.front();
-  const Eigen::Vector3d high = target_points.back();
+  const Eigen::Vector3d& low = target_points.front();
+  const Eigen::Vector3d& high = target_points.back();
   const std::array<Eigen::Vector3d, 4> vertices = {low, {high.x(), low.y(), 0.0}, high, {low.x(), high.y(), 0.0}};
   const Rigid3 T_cam_target = rig_camera.T_cam_rig * T_rig_target;
   std::vector<std::vector<Eigen::Vector2d>> pieces(1);

@@ -51,11 +51,11 @@ std::optional<QuadraticMap> quadraticMap(const std::vector<observation::Corner>&
 /// log of the area scale grows in this direction of the image: towards the near side of the board.
 Eigen::Vector2d nearDirection(const QuadraticMap& map) {
   const Eigen::Matrix2d inverse = map.A.inverse();
-  Eigen::Matrix2d dA_dx;
-  dA_dx << 2.0 * map.quadratic(0, 0), map.quadratic(1, 0), 2.0 * map.quadratic(0, 1), map.quadratic(1, 1);
-  Eigen::Matrix2d dA_dy;
-  dA_dy << map.quadratic(1, 0), 2.0 * map.quadratic(2, 0), map.quadratic(1, 1), 2.0 * map.quadratic(2, 1);
-  const Eigen::Vector2d gradient((inverse * dA_dx).trace(), (inverse * dA_dy).trace());  // d(log det A) on the board
+  Eigen::Matrix2d J_A_x;
+  J_A_x << 2.0 * map.quadratic(0, 0), map.quadratic(1, 0), 2.0 * map.quadratic(0, 1), map.quadratic(1, 1);
+  Eigen::Matrix2d J_A_y;
+  J_A_y << map.quadratic(1, 0), 2.0 * map.quadratic(2, 0), map.quadratic(1, 1), 2.0 * map.quadratic(2, 1);
+  const Eigen::Vector2d gradient((inverse * J_A_x).trace(), (inverse * J_A_y).trace());  // d(log det A) on the board
   return inverse.transpose() * gradient;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 /// Cells whose mean never rose above this are outside of the lens's circle: above the noise of a dark sensor, below the
 /// darkest corner of a room.
-constexpr int kDark_grey = 12;
+constexpr int kDarkGrey = 12;
 
 constexpr double kMinLit_ratio = 0.3;    ///< of a region's cells, for a region that counts
 constexpr double kMinEmpty_ratio = 0.5;  ///< of its lit cells, for one that needs corners
@@ -37,7 +37,7 @@ void CoverageMap::addCorners(const std::vector<observation::Corner>& corners) {
   }
 }
 
-bool CoverageMap::isLit(int row, int col) const { return brightest_(row, col) >= kDark_grey; }
+bool CoverageMap::isLit(int row, int col) const { return brightest_(row, col) >= kDarkGrey; }
 
 bool CoverageMap::isLit(const Eigen::Vector2d& px) const {
   const double col = std::floor((px.x() + 0.5) * counts_.cols / width_);

@@ -108,33 +108,37 @@ std::optional<Decision> Guide::reasonAgainst(const SeenImage& image) const {
   return image.blur_px && *image.blur_px > options_.max_blur_px ? std::make_optional(Decision::kBlurred) : std::nullopt;
 }
 
-Decision Guide::offer(const std::vector<SeenImage>& images) {
+std::vector<Decision> Guide::offer(const std::vector<SeenImage>& images) {
   KeptView candidate;
-  Decision reason = Decision::kNoBoard;
   std::vector<SeenImage> usable;
+  std::vector<std::optional<Decision>> reasons;
   for (const SeenImage& image : images) {
     const auto at = static_cast<std::size_t>(image.camera_index);
     if (!coverage_[at]) {
       coverage_[at].emplace(image.gray.cols, image.gray.rows);
       diagonals_px_[at] = std::hypot(image.gray.cols, image.gray.rows);
     }
-    const std::optional<Decision> against = reasonAgainst(image);
-    if (against != Decision::kOtherSize) {
+    reasons.push_back(reasonAgainst(image));
+    if (reasons.back() != Decision::kOtherSize) {
       coverage_[at]->addImage(image.gray);
     }
-    if (against) {
-      reason = std::max(reason, *against);
-      continue;
+    if (!reasons.back()) {
+      usable.push_back(image);
+      candidate.view.cameras.push_back(cameraView(image));
+      candidate.blur_px = std::max(candidate.blur_px, image.blur_px.value_or(0.0));
     }
-    usable.push_back(image);
-    candidate.view.cameras.push_back(cameraView(image));
-    candidate.blur_px = std::max(candidate.blur_px, image.blur_px.value_or(0.0));
   }
-  if (usable.empty()) {
-    return reason;
+  Decision of_view = Decision::kNoBoard;
+  if (!usable.empty()) {
+    candidate.view.stamp_ns = usable.front().stamp_ns;
+    of_view = consider(std::move(candidate), usable);
   }
-  candidate.view.stamp_ns = usable.front().stamp_ns;
-  return consider(std::move(candidate), usable);
+  std::vector<Decision> decisions;
+  decisions.reserve(reasons.size());
+  for (const std::optional<Decision>& reason : reasons) {
+    decisions.push_back(reason.value_or(of_view));
+  }
+  return decisions;
 }
 
 Decision Guide::consider(KeptView candidate, const std::vector<SeenImage>& images) {

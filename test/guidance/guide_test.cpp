@@ -49,7 +49,7 @@ class GuideTest : public testing::Test {
 
   Decision show(const Rigid3& T_cam_target, double blur_px = 0.8) {
     last_ = seenImage(camera_, T_cam_target, ++stamp_ns_, blur_px);
-    return guide_.offer({last_});
+    return guide_.offer({last_}).front();
   }
 
   std::string advice() const { return guide_.advise({last_}).text; }
@@ -123,7 +123,7 @@ TEST_F(GuideTest, DoesNotMixImageSizes) {
   show(boardAt({0.0, 0.0, 0.6}, 0.0, 0.0));
   SeenImage other = last_;
   other.gray = cv::Mat(240, 320, CV_8UC1, cv::Scalar(128));
-  EXPECT_EQ(guide_.offer({other}), Decision::kOtherSize);
+  EXPECT_EQ(guide_.offer({other}).front(), Decision::kOtherSize);
 }
 
 TEST_F(GuideTest, KeepsTheVeryPixels) {

@@ -37,7 +37,7 @@ struct SeenImage {
 enum class Decision {
   kKept,
   kKeptInstead,  ///< of one that says less, or of the same one less sharp
-  kNoBoard,      ///< in no image, or too little of it
+  kNoBoard,      ///< or too little of it
   kBlurred,
   kOtherSize,  ///< than the images before
   kKnown,      ///< says too little beyond what is kept
@@ -59,8 +59,8 @@ class Guide {
  public:
   Guide(const target::Target& target, std::size_t num_cameras, const GuideOptions& options);
 
-  /// Images of one time, at most one per camera. Takes those that are of use.
-  Decision offer(const std::vector<SeenImage>& images);
+  /// Images of one time, at most one per camera. Keeps those that are of use, and says what became of each.
+  std::vector<Decision> offer(const std::vector<SeenImage>& images);
 
   /// What to do next, for a board that is seen in these images.
   Advice advise(const std::vector<SeenImage>& images) const;

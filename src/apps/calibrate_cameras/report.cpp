@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "common/interrupt.h"
 #include "tartan_calib/report/analysis.h"
 #include "tartan_calib/report/draw.h"
 #include "tartan_calib/report/pictures.h"
@@ -52,13 +51,14 @@ std::string scriptPath() {
 
 }  // namespace
 
-ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix) {
+ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
+                        const std::function<bool()>& is_cancelled) {
   ReportFiles files;
   try {
     const TemporaryFolder folder;
     report::PictureOptions options;
     options.num_threads = inputs.options.num_threads;
-    options.is_cancelled = isInterruptWaiting;
+    options.is_cancelled = is_cancelled;
     const auto corners = report::seenCorners(result);
     const auto pictures = report::takePictures(inputs.streams, result, corners, folder.path(), options);
     const report::Analysis analysis = report::analyse(result, inputs.options, corners, pictures);
@@ -66,7 +66,7 @@ ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs&
     report::writeReportData(folder.path(), {inputs.dataset, result, analysis, *files.verdict, pictures});
     const std::string pdf = prefix + "-report-cam.pdf";
     const std::string html = prefix + "-report-cam.html";
-    report::drawReport(scriptPath(), folder.path(), pdf, html, isInterruptWaiting);
+    report::drawReport(scriptPath(), folder.path(), pdf, html, is_cancelled);
     files.pdf = pdf;
     files.html = html;
   } catch (const std::exception& error) {  // the calibration is written; a report is not worth failing for

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,9 +17,10 @@ struct ReportFiles {
   std::string failure;
 };
 
-/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Once isInterruptWaiting() it stops, and nothing of the
+/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Once `is_cancelled` says so it stops, and nothing of the
 /// report is left.
-ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix);
+ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
+                        const std::function<bool()>& is_cancelled);
 
 /// Opens the HTML page with xdg-open where standard output is a terminal and there is a display.
 void showReport(const ReportFiles& files);

@@ -16,7 +16,7 @@ void reportOn(const pipeline::CalibrationResult& result, const Inputs& inputs, c
   std::printf("Generating result report...\n");
   std::fflush(stdout);
   const UninterruptedSection leaves_nothing_behind;
-  const ReportFiles files = writeReport(result, inputs, outputPrefix(arguments));
+  const ReportFiles files = writeReport(result, inputs, outputPrefix(arguments), isInterruptWaiting);
   if (isInterruptWaiting()) {
     return;
   }

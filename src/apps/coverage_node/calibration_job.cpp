@@ -22,6 +22,8 @@ using Tell = std::function<void(const std::string&)>;
 
 constexpr std::chrono::milliseconds kProgressInterval{500};
 
+bool isStopping() { return !::ros::ok(); }
+
 /// By increasing stamp, as the cameras took them.
 void writeBag(const std::vector<KeptView>& views, const std::vector<std::string>& topics, const std::string& path) {
   std::vector<const EncodedImage*> images;
@@ -57,7 +59,7 @@ pipeline::Listener pipelineListener(const Tell& tell) {
     }
   };
   listener.warning = [tell](const std::string& text) { tell("warning: " + text); };
-  listener.is_cancelled = [] { return !::ros::ok(); };
+  listener.is_cancelled = isStopping;
   return listener;
 }
 
@@ -109,8 +111,8 @@ void CalibrationJob::run(const std::vector<KeptView>& views) {
   listener_.camchain(io::camchainText(io::camchain(result)));
   if (arguments_.report) {
     tell("report");
-    const ReportFiles report = writeReport(result, inputs, outputPrefix(arguments_));
-    if (!report.failure.empty()) {
+    const ReportFiles report = writeReport(result, inputs, outputPrefix(arguments_), isStopping);
+    if (!report.failure.empty() && !isStopping()) {
       tell("warning: no report: " + report.failure);
     }
   }

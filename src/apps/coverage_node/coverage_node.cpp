@@ -2,10 +2,10 @@
 
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/this_node.h>
 
 #include <functional>
 
+#include "live/detected_image.h"
 #include "live/messages.h"
 #include "tartan_calib/guidance/blur.h"
 #include "tartan_calib/guidance/overlay.h"
@@ -37,7 +37,6 @@ CoverageNode::CoverageNode(::ros::NodeHandle node, ::ros::NodeHandle private_nod
     : options_(options),
       target_(loadTarget(options.calibration.target_file)),
       detector_(target_, options.calibration.calibrate.detector),
-      cameras_(options.topics.size()),
       guide_(target_, options.topics.size(), options.guide),
       advice_(private_node.advertise<std_msgs::String>("advice", kQueueSize, true)),
       diagnostics_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kQueueSize)),
@@ -50,8 +49,12 @@ CoverageNode::CoverageNode(::ros::NodeHandle node, ::ros::NodeHandle private_nod
             },
             [this](const std::string& yaml) { camchain_.publish(textMessage(yaml)); }}),
       input_(node, options.topics, options.input) {
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    cameras_[i].overlay = private_node.advertise<sensor_msgs::Image>(cameraName(i) + "/overlay", kQueueSize);
+  for (std::size_t i = 0; i < options.topics.size(); ++i) {
+    cameras_.push_back({CameraMonitor(static_cast<int>(i), options.topics[i]),
+                        private_node.advertise<sensor_msgs::Image>(cameraName(i) + "/overlay", kQueueSize),
+                        0,
+                        {},
+                        {}});
   }
   services_.push_back(private_node.advertiseService("calibrate", &CoverageNode::onCalibrate, this));
   services_.push_back(private_node.advertiseService("reset", &CoverageNode::onReset, this));
@@ -77,27 +80,18 @@ void CoverageNode::run() {
 }
 
 std::vector<SeenImage> CoverageNode::detect(const std::vector<ArrivedImage>& images) {
-  std::vector<std::future<SeenImage>> detections;
-  for (const ArrivedImage& image : images) {
-    detections.push_back(std::async(std::launch::async, [this, &image] {
-      SeenImage seen{image.camera_index, image.stamp_ns, image.decode(), {}, {}};
-      seen.corners = detector_.detect(seen.gray).corners;
-      seen.blur_px = guidance::edgeBlur(seen.gray, seen.corners, target_);
-      return seen;
-    }));
-  }
-  std::vector<SeenImage> all;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    CameraState& camera = cameras_[static_cast<std::size_t>(images[i].camera_index)];
-    try {
-      all.push_back(detections[i].get());
-      ++camera.num_processed;
-    } catch (const std::exception& error) {  // one broken image must not end the session
-      ++camera.num_unreadable;
-      camera.unreadable_reason = error.what();
+  std::vector<SeenImage> seen;
+  for (DetectedImage& image : detectImages(detector_, images)) {
+    CameraMonitor& monitor = cameras_[static_cast<std::size_t>(image.camera_index)].monitor;
+    if (image.gray.empty()) {
+      monitor.countUnreadable(image.unreadable_reason);
+      continue;
     }
+    monitor.countProcessed();
+    const auto blur_px = guidance::edgeBlur(image.gray, image.corners, target_);
+    seen.push_back({image.camera_index, image.stamp_ns, image.gray, std::move(image.corners), blur_px});
   }
-  return all;
+  return seen;
 }
 
 void CoverageNode::process(const std::vector<ArrivedImage>& images) {
@@ -106,16 +100,17 @@ void CoverageNode::process(const std::vector<ArrivedImage>& images) {
     return;
   }
   const std::lock_guard<std::mutex> lock(guide_mutex_);
-  const guidance::Decision decision = guide_.offer(seen);
+  const std::vector<guidance::Decision> decisions = guide_.offer(seen);
   updateSolve();
   const guidance::Advice advice = guide_.advise(seen);
   advice_.publish(textMessage(advice.text));
-  for (const SeenImage& image : seen) {
-    CameraState& camera = cameras_[static_cast<std::size_t>(image.camera_index)];
-    camera.seen = image;
-    camera.decision = guidance::decisionText(decision);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    CameraState& camera = cameras_[static_cast<std::size_t>(seen[i].camera_index)];
+    camera.num_corners = seen[i].corners.size();
+    camera.blur_px = seen[i].blur_px;
+    camera.decision = decisions[i];
     if (camera.overlay.getNumSubscribers() > 0) {
-      publishOverlay(image, advice, decision);
+      publishOverlay(seen[i], advice, decisions[i]);
     }
   }
 }
@@ -168,37 +163,17 @@ void CoverageNode::publishDiagnostics() {
 }
 
 DiagnosticStatus CoverageNode::status(int camera_index, double interval_s) {
-  const auto at = static_cast<std::size_t>(camera_index);
-  CameraState& camera = cameras_[at];
-  const InputCounts counts = input_.counts(camera_index);
-  DiagnosticStatus status;
-  status.name = ::ros::this_node::getName() + ": " + cameraName(camera_index);
-  status.hardware_id = options_.topics[at];
-
-  if (counts.received == camera.num_received_before) {
-    worsen(status, DiagnosticStatus::STALE, "no images on " + options_.topics[at]);
+  CameraState& camera = cameras_[static_cast<std::size_t>(camera_index)];
+  DiagnosticStatus status = camera.monitor.status(input_.counts(camera_index), interval_s);
+  if (camera.decision) {
+    const bool needs_care =
+        *camera.decision == guidance::Decision::kBlurred || *camera.decision == guidance::Decision::kOtherSize;
+    worsen(status, needs_care ? DiagnosticStatus::WARN : DiagnosticStatus::OK, guidance::decisionText(*camera.decision));
   }
-  if (camera.num_unreadable > camera.num_unreadable_before) {
-    worsen(status, DiagnosticStatus::ERROR, "broken image: " + camera.unreadable_reason);
-  }
-  if (camera.decision == guidance::decisionText(guidance::Decision::kOtherSize) ||
-      camera.decision == guidance::decisionText(guidance::Decision::kBlurred)) {
-    worsen(status, DiagnosticStatus::WARN, camera.decision);
-  }
-  worsen(status, DiagnosticStatus::OK, camera.decision);
-
-  const auto rate = static_cast<double>(camera.num_processed - camera.num_processed_before) / interval_s;
-  addValue(status, "processed rate [Hz]", format("%.1f", rate));
-  addValue(status, "received", std::to_string(counts.received));
-  addValue(status, "dropped", std::to_string(counts.dropped));
-  addValue(status, "unreadable", std::to_string(camera.num_unreadable));
-  addValue(status, "corners", std::to_string(camera.seen ? camera.seen->corners.size() : 0));
-  addValue(status, "blur [px]", camera.seen && camera.seen->blur_px ? format("%.2f", *camera.seen->blur_px) : "unknown");
+  addValue(status, "corners", std::to_string(camera.num_corners));
+  addValue(status, "blur [px]", camera.blur_px ? format("%.2f", *camera.blur_px) : "unknown");
   addValue(status, "views kept", std::to_string(guide_.numKept(camera_index)));
   addValue(status, "calibrated", guide_.rig() ? "yes" : "no");
-  camera.num_received_before = counts.received;
-  camera.num_processed_before = camera.num_processed;
-  camera.num_unreadable_before = camera.num_unreadable;
   return status;
 }
 

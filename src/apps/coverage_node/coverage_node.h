@@ -13,6 +13,7 @@
 
 #include "coverage_node/calibration_job.h"
 #include "coverage_node/options.h"
+#include "live/camera_monitor.h"
 #include "live/image_input.h"
 #include "tartan_calib/detection/target_detector.h"
 #include "tartan_calib/guidance/guide.h"
@@ -32,17 +33,12 @@ class CoverageNode {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// What the diagnostics tell of a camera.
   struct CameraState {
+    CameraMonitor monitor;
     ::ros::Publisher overlay;
-    std::size_t num_processed = 0;
-    std::size_t num_processed_before = 0;  ///< at the last diagnostics
-    std::size_t num_received_before = 0;
-    std::size_t num_unreadable = 0;
-    std::size_t num_unreadable_before = 0;
-    std::string unreadable_reason;
-    std::optional<guidance::SeenImage> seen;  ///< the last one
-    std::string decision;
+    std::size_t num_corners = 0;  ///< of the last image, and what became of it
+    std::optional<double> blur_px;
+    std::optional<guidance::Decision> decision;
   };
 
   std::vector<guidance::SeenImage> detect(const std::vector<ArrivedImage>& images);

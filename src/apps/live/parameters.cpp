@@ -29,7 +29,7 @@ std::string Parameters::text(const std::string& name, const std::string& fallbac
 }
 
 std::string Parameters::text(const std::string& name) {
-  const std::string value = text(name, "");
+  std::string value = text(name, "");
   if (value.empty()) {
     throw UsageError("parameter ~" + name + " is missing");
   }
@@ -39,17 +39,14 @@ std::string Parameters::text(const std::string& name) {
 std::vector<std::string> Parameters::words(const std::string& name, const std::vector<std::string>& fallback) {
   known_.insert(node_.resolveName(name));
   std::vector<std::string> list;
-  std::string joined_words;
-  if (!node_.hasParam(name)) {
-    return fallback;
+  std::string text;
+  if (node_.hasParam(name) && !node_.getParam(name, list)) {
+    if (!node_.getParam(name, text)) {
+      throw UsageError("parameter ~" + name + " must be a list of texts, or one text with blanks between them");
+    }
+    list = split(text);
   }
-  if (node_.getParam(name, list)) {
-    return list;
-  }
-  if (!node_.getParam(name, joined_words)) {
-    throw UsageError("parameter ~" + name + " must be a list of texts, or one text with blanks between them");
-  }
-  return split(joined_words);
+  return list.empty() ? fallback : list;
 }
 
 std::vector<std::string> Parameters::words(const std::string& name) {

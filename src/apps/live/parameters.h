@@ -19,6 +19,7 @@ class Parameters {
 
   /// A list of texts, or one text with blanks between the words, as launch files pass it.
   std::vector<std::string> words(const std::string& name);
+  /// The fallback also stands for a list without words.
   std::vector<std::string> words(const std::string& name, const std::vector<std::string>& fallback);
 
   /// An integer may stand for it. Within [lowest, highest].
