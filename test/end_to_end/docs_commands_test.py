@@ -24,6 +24,9 @@ NOT_RUN = {
     "source build/ws/devel/setup.bash": "is what every command of this test begins with",
     "cmake": "builds this package",
     "rosbag record": "needs cameras",
+    "roslaunch tartan_calib record.launch": "needs cameras; launch_test.py and live_test.py run it",
+    "roslaunch tartan_calib validate.launch": "needs cameras; launch_test.py and live_test.py run it",
+    "rosservice": "needs a node that runs; live_test.py calls it",
     "rqt": "opens a window",
     "rviz": "opens a window",
 }

@@ -17,8 +17,8 @@ struct ReportFiles {
   std::string failure;
 };
 
-/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Once `is_cancelled` says so it stops, and nothing of the
-/// report is left.
+/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Once `is_cancelled` says so it stops, and nothing of
+/// the report is left.
 ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
                         const std::function<bool()>& is_cancelled);
 
