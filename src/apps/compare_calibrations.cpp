@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "common/command_line.h"
-#include "common/image_plot.h"
 #include "common/interrupt.h"
+#include "common/picture_file.h"
 #include "common/program.h"
 #include "compare_calibrations/difference_map.h"
 #include "tartan_calib/io/corners_csv.h"

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/image_plot.h"
+#include "common/picture_file.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {

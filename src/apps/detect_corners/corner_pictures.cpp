@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "common/image_plot.h"
+#include "common/picture_file.h"
 #include "tartan_calib/error.h"
 
 namespace tartan_calib::apps {

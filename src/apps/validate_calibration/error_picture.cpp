@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/image_plot.h"
+#include "common/picture_file.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {

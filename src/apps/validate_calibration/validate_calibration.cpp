@@ -6,9 +6,9 @@
 #include <cstdio>
 
 #include "common/detection.h"
-#include "common/image_plot.h"
 #include "common/interrupt.h"
 #include "common/output.h"
+#include "common/picture_file.h"
 #include "common/program.h"
 #include "common/progress_bar.h"
 #include "common/recording.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 
@@ -13,7 +13,6 @@
 namespace tartan_calib::apps {
 namespace {
 
-using calibration::CameraErrors;
 using calibration::ImageErrors;
 using observation::CameraView;
 
