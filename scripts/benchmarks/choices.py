@@ -1,6 +1,7 @@
 """Figures behind what docs/recording.md advises and docs/decisions.md decides."""
 
 import re
+import shutil
 
 import numpy as np
 
@@ -51,7 +52,7 @@ def tilts(_):
 
 def jpeg(_):
     """What compression to JPEG costs."""
-    import cv2  # python3-opencv, which nothing else here needs
+    from PIL import Image  # python3-pil, which nothing else here needs
 
     folder, target = ordinary()
     images = sorted((folder / "cam0").iterdir())[::5]
@@ -60,11 +61,10 @@ def jpeg(_):
         bag = WORK / f"jpeg-{quality}"
         (bag / "cam0").mkdir(parents=True, exist_ok=True)
         for image in images:
-            pixels = cv2.imread(str(image), cv2.IMREAD_GRAYSCALE)
             if quality is None:
-                cv2.imwrite(str(bag / "cam0" / image.name), pixels)
+                shutil.copy(image, bag / "cam0")
             else:
-                cv2.imwrite(str(bag / "cam0" / f"{image.stem}.jpg"), pixels, [cv2.IMWRITE_JPEG_QUALITY, quality])
+                Image.open(image).save(bag / "cam0" / f"{image.stem}.jpg", quality=quality)
         _, record, _ = calibrate(bag, bag, target, [MODEL], [TOPIC])
         rows.append(["PNG" if quality is None else f"JPEG, quality {quality}", camera(record)["corners"]["used"], f"{rms(record):.3f}",
                      difference(f"{bag}-camchain.yaml", WORK / "ordinary-truth-camchain.yaml")])
