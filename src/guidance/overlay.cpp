@@ -6,7 +6,7 @@
 namespace tartan_calib::guidance {
 namespace {
 
-constexpr double kFullHeat_corners = 20.0;  ///< in a cell: more makes no difference to a calibration
+constexpr double kFullHeat = 20.0;  ///< corners in a cell: more make no difference to a calibration
 constexpr double kOutlineWidth_px = 4.0;
 
 }  // namespace
@@ -16,7 +16,7 @@ cv::Mat drawOverlay(const cv::Mat& gray, const Overlay& overlay, int max_width) 
   if (overlay.coverage != nullptr) {
     const cv::Mat1i& counts = overlay.coverage->counts();
     cv::Mat1f levels;
-    counts.convertTo(levels, CV_32F, 1.0 / kFullHeat_corners);
+    counts.convertTo(levels, CV_32F, 1.0 / kFullHeat);
     painter.drawHeat(levels, counts > 0);
   }
   for (const std::vector<Eigen::Vector2d>& line : overlay.outline) {
@@ -29,7 +29,7 @@ cv::Mat drawOverlay(const cv::Mat& gray, const Overlay& overlay, int max_width) 
     painter.drawHeadline(overlay.warning, kLargeText, kYellow);
   }
   painter.addBand(overlay.advice, kLargeText, kWhite);
-  painter.addBandWithScale(overlay.status, areaColours, format("%.0f+ corners", kFullHeat_corners));
+  painter.addBandWithScale(overlay.status, areaColours, format("%.0f+ corners", kFullHeat));
   return painter.picture();
 }
 

@@ -48,38 +48,38 @@ class GuideTest : public testing::Test {
   }
 
   Decision show(const Rigid3& T_cam_target, double blur_px = 0.8) {
-    last_ = seenImage(camera_, T_cam_target, ++stamp_ns_, blur_px);
-    return guide_.offer({last_}).front();
+    last = seenImage(camera, T_cam_target, ++stamp_ns, blur_px);
+    return guide.offer({last}).front();
   }
 
-  std::string advice() const { return guide_.advise({last_}).text; }
+  std::string advice() const { return guide.advise({last}).text; }
 
   /// Tilted views from everywhere.
   void showAll(int num_views, unsigned seed) {
     test_support::SceneOptions scene_options;
     scene_options.num_views = num_views;
     scene_options.seed = seed;
-    for (const Rigid3& T_rig_target : test_support::simulateScene(camera_, scene_options).T_rig_target) {
+    for (const Rigid3& T_rig_target : test_support::simulateScene(camera, scene_options).T_rig_target) {
       show(T_rig_target);
     }
   }
 
   void solve() {
-    const auto solve = guide_.nextSolve([] { return false; });
+    const auto solve = guide.nextSolve([] { return false; });
     ASSERT_TRUE(solve);
     const auto rig = (*solve)();
     ASSERT_TRUE(rig);
-    guide_.adopt(*rig);
+    guide.adopt(*rig);
   }
 
-  camera::Camera camera_ = testCamera();
-  Guide guide_{target::AprilGrid{}, 1, options()};
-  SeenImage last_;
-  std::int64_t stamp_ns_ = 0;
+  camera::Camera camera = testCamera();
+  Guide guide{target::AprilGrid{}, 1, options()};
+  SeenImage last;
+  std::int64_t stamp_ns = 0;
 };
 
 TEST_F(GuideTest, AsksForTheBoardFirst) {
-  guide_.offer({{0, 1, cv::Mat(kHeight_px, kWidth_px, CV_8UC1, cv::Scalar(128)), {}, {}}});
+  guide.offer({{0, 1, cv::Mat(kHeight_px, kWidth_px, CV_8UC1, cv::Scalar(128)), {}, {}}});
   EXPECT_EQ(advice(), "show the whole board");
 }
 
@@ -105,76 +105,125 @@ TEST_F(GuideTest, ViewsInTheLeftHalfAloneNeedTheRight) {
 TEST_F(GuideTest, DoesNotKeepWhatItHas) {
   EXPECT_EQ(show(boardAt({0.0, 0.0, 0.6}, 0.0, 0.0)), Decision::kKept);
   EXPECT_EQ(show(boardAt({0.005, 0.0, 0.6}, 0.0, 0.0)), Decision::kKnown);
-  EXPECT_EQ(guide_.kept().size(), 1u);
+  EXPECT_EQ(guide.kept().size(), 1u);
 }
 
 TEST_F(GuideTest, TakesTheSharperOfTwoAlike) {
   show(boardAt({0.0, 0.0, 0.6}, 0.0, 0.0), 1.8);
   EXPECT_EQ(show(boardAt({0.005, 0.0, 0.6}, 0.0, 0.0), 0.7), Decision::kKeptInstead);
-  EXPECT_EQ(guide_.kept().front().blur_px, 0.7);
+  EXPECT_EQ(guide.kept().front().blur_px, 0.7);
 }
 
 TEST_F(GuideTest, DoesNotKeepBlurredImages) {
   EXPECT_EQ(show(boardAt({0.0, 0.0, 0.6}, 0.0, 0.0), 3.0), Decision::kBlurred);
-  EXPECT_TRUE(guide_.kept().empty());
+  EXPECT_TRUE(guide.kept().empty());
 }
 
 TEST_F(GuideTest, DoesNotMixImageSizes) {
   show(boardAt({0.0, 0.0, 0.6}, 0.0, 0.0));
-  SeenImage other = last_;
+  SeenImage other = last;
   other.gray = cv::Mat(240, 320, CV_8UC1, cv::Scalar(128));
-  EXPECT_EQ(guide_.offer({other}).front(), Decision::kOtherSize);
+  EXPECT_EQ(guide.offer({other}).front(), Decision::kOtherSize);
 }
 
 TEST_F(GuideTest, KeepsTheVeryPixels) {
-  SeenImage image = seenImage(camera_, boardAt({0.0, 0.0, 0.6}, 0.0, 0.0), 1);
+  SeenImage image = seenImage(camera, boardAt({0.0, 0.0, 0.6}, 0.0, 0.0), 1);
   cv::randu(image.gray, 0, 256);
-  guide_.offer({image});
-  EXPECT_EQ(cv::norm(guide_.kept().front().images.front().decode(), image.gray, cv::NORM_INF), 0.0);
+  guide.offer({image});
+  EXPECT_EQ(cv::norm(guide.kept().front().images.front().decode(), image.gray, cv::NORM_INF), 0.0);
 }
 
 TEST_F(GuideTest, SolvesFromTheKeptViewsAndThenAsksForWhatAddsMost) {
   showAll(12, 2);
   solve();
-  ASSERT_TRUE(guide_.rig());
-  const Advice before = guide_.advise({});
+  ASSERT_TRUE(guide.rig());
+  const Advice before = guide.advise({});
   ASSERT_TRUE(before.candidate);
   // Holding the board there is worth what was promised; its corners are the truth's, the promise is the solved model's.
-  Eigen::MatrixXd known = priorInformation(*guide_.rig());
-  for (const KeptView& kept : guide_.kept()) {
+  Eigen::MatrixXd known = priorInformation(*guide.rig());
+  for (const KeptView& kept : guide.kept()) {
     known += kept.information;
   }
   EXPECT_EQ(show(before.candidate->T_rig_target), Decision::kKept);
-  EXPECT_NEAR(gainBits(known, guide_.kept().back().information), before.gain_bits, 0.05 * before.gain_bits);
-  EXPECT_LT(guide_.advise({}).gain_bits, before.gain_bits);
+  EXPECT_NEAR(gainBits(known, guide.kept().back().information), before.gain_bits, 0.05 * before.gain_bits);
+  EXPECT_LT(guide.advise({}).gain_bits, before.gain_bits);
 }
 
 TEST_F(GuideTest, FollowingTheAdviceEndsInEnoughViews) {
   showAll(12, 2);
   solve();
   for (int i = 0; i < 60 && advice() != "enough views: calibrate"; ++i) {
-    show(guide_.advise({}).candidate->T_rig_target);
+    show(guide.advise({}).candidate->T_rig_target);
   }
   EXPECT_EQ(advice(), "enough views: calibrate");
+}
+
+TEST_F(GuideTest, AdvisedViewsTellMoreThanWavedOnes) {
+  constexpr int kNumMore = 8;
+  showAll(12, 2);
+  solve();
+  test_support::SceneOptions waved;
+  waved.num_views = kNumMore;
+  waved.seed = 3;
+  const calibration::Rig rig = *guide.rig();
+  Eigen::MatrixXd known = priorInformation(rig);
+  for (const KeptView& kept : guide.kept()) {
+    known += kept.information;
+  }
+  Eigen::MatrixXd by_waving = known;
+  const Scene scene = test_support::simulateScene(camera, waved);
+  for (std::size_t i = 0; i < scene.views.size(); ++i) {
+    by_waving += calibration::viewInformation(rig, scene.target_points, scene.views[i], scene.T_rig_target[i]);
+  }
+  Eigen::MatrixXd by_advice = known;
+  for (int i = 0; i < kNumMore; ++i) {
+    show(guide.advise({}).candidate->T_rig_target);
+    by_advice += guide.kept().back().information;
+  }
+  EXPECT_GT(gainBits(known, by_advice - known), 1.5 * gainBits(known, by_waving - known));
 }
 
 TEST_F(GuideTest, WhenFullItExchangesTheViewThatSaysLeast) {
   GuideOptions few = options();
   few.max_views = 10;
-  guide_ = Guide(target::AprilGrid{}, 1, few);
+  guide = Guide(target::AprilGrid{}, 1, few);
   test_support::SceneOptions far;  // small boards say little
   far.num_views = 10;
   far.min_size_ratio = 0.2;
   far.max_size_ratio = 0.25;
   far.min_corners = 100;
-  for (const Rigid3& T_rig_target : test_support::simulateScene(camera_, far).T_rig_target) {
+  for (const Rigid3& T_rig_target : test_support::simulateScene(camera, far).T_rig_target) {
     show(T_rig_target);
   }
   solve();
-  const double before = guide_.advise({}).gain_bits;
-  EXPECT_EQ(show(guide_.advise({}).candidate->T_rig_target), Decision::kKeptInstead);
-  EXPECT_EQ(guide_.kept().size(), 10u);
-  EXPECT_LT(guide_.advise({}).gain_bits, before);
+  const double before = guide.advise({}).gain_bits;
+  EXPECT_EQ(show(guide.advise({}).candidate->T_rig_target), Decision::kKeptInstead);
+  EXPECT_EQ(guide.kept().size(), 10u);
+  EXPECT_LT(guide.advise({}).gain_bits, before);
+}
+
+TEST(RigGuide, AsksForTheBoardInTwoCamerasAtOnce) {
+  GuideOptions options;
+  options.calibrate.models = {"ds-none", "ds-none"};
+  Guide guide(target::AprilGrid{}, 2, options);
+  SeenImage image = seenImage(testCamera(), boardAt({0.0, 0.0, 0.6}, 0.0, 0.0), 1);
+  for (int camera_index = 0; camera_index < 2; ++camera_index) {  // never both
+    image.camera_index = camera_index;
+    image.stamp_ns = camera_index;
+    EXPECT_EQ(guide.offer({image}).front(), Decision::kKept);
+  }
+  EXPECT_EQ(guide.advise({}).text, "show the board to cam0 and cam1 at the same time");
+}
+
+TEST(RigGuide, SaysOfEachImageWhatBecameOfIt) {
+  GuideOptions options;
+  options.calibrate.models = {"ds-none", "ds-none"};
+  Guide guide(target::AprilGrid{}, 2, options);
+  const SeenImage image = seenImage(testCamera(), boardAt({0.0, 0.0, 0.6}, 0.0, 0.0), 1);
+  SeenImage blurred = image;
+  blurred.camera_index = 1;
+  blurred.blur_px = 5.0;
+  EXPECT_EQ(guide.offer({image, blurred}), (std::vector<Decision>{Decision::kKept, Decision::kBlurred}));
 }
 
 TEST(GainBits, IsHalfTheLogOfTheDeterminantsRatio) {

@@ -104,6 +104,7 @@ void CoverageNode::process(const std::vector<ArrivedImage>& images) {
   updateSolve();
   const guidance::Advice advice = guide_.advise(seen);
   advice_.publish(textMessage(advice.text));
+  is_waiting_ = false;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     CameraState& camera = cameras_[static_cast<std::size_t>(seen[i].camera_index)];
     camera.num_corners = seen[i].corners.size();
@@ -160,6 +161,10 @@ void CoverageNode::publishDiagnostics() {
     array.status.push_back(status(static_cast<int>(i), interval_s));
   }
   diagnostics_.publish(array);
+  if (is_waiting_) {
+    advice_.publish(textMessage(guide_.advise({}).text));
+  }
+  is_waiting_ = true;
 }
 
 DiagnosticStatus CoverageNode::status(int camera_index, double interval_s) {

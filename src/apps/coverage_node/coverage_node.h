@@ -55,6 +55,7 @@ class CoverageNode {
   detection::TargetDetector detector_;
   std::vector<CameraState> cameras_;
   Clock::time_point last_diagnostics_;
+  bool is_waiting_ = true;  ///< nothing was processed since then
 
   std::mutex guide_mutex_;  ///< services run on other threads
   guidance::Guide guide_;
