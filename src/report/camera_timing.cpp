@@ -5,45 +5,28 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
+#include "board_motion.h"
 #include "tartan_calib/median.h"
 
 namespace tartan_calib::report {
 namespace {
 
 constexpr double kNsPerMs = 1e6;
-constexpr std::int64_t kMaxGap_ns = 400'000'000;  ///< between neighbouring views; over longer ones a motion is no line
-
-/// Motion of the board per millisecond in the rig frame around each view, from its neighbours' poses; empty where a
-/// neighbour is missing or too far in time.
-std::vector<std::optional<geometry::Vector6d>> boardMotions(const calibration::Solution& solution) {
-  std::vector<std::optional<geometry::Vector6d>> motions(solution.views.size());
-  const std::set<int> unsolved(solution.unsolved_views.begin(), solution.unsolved_views.end());
-  for (std::size_t i = 1; i + 1 < motions.size(); ++i) {
-    const std::int64_t before_ns = solution.views[i].stamp_ns - solution.views[i - 1].stamp_ns;
-    const std::int64_t after_ns = solution.views[i + 1].stamp_ns - solution.views[i].stamp_ns;
-    const int view = static_cast<int>(i);
-    const bool is_solved = unsolved.count(view - 1) + unsolved.count(view) + unsolved.count(view + 1) == 0;
-    if (is_solved && before_ns > 0 && after_ns > 0 && std::max(before_ns, after_ns) < kMaxGap_ns) {
-      const geometry::Rigid3 change = solution.T_rig_target[i + 1] * solution.T_rig_target[i - 1].inverse();
-      motions[i] = geometry::logRigid(change) * (kNsPerMs / static_cast<double>(before_ns + after_ns));
-    }
-  }
-  return motions;
-}
 
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 using Matrix2Xd = Eigen::Matrix<double, 2, Eigen::Dynamic>;
 
-/// Normal equations of one view: pose of the board against all its corners, and the fitted camera's share of them.
+/// Normal equations of one view's pose, of all corners.
 struct ViewEquations {
-  geometry::Matrix6d H = geometry::Matrix6d::Zero();         ///< of all cameras
-  geometry::Matrix6d H_camera = geometry::Matrix6d::Zero();  ///< of the fitted camera
-  geometry::Vector6d b_camera = geometry::Vector6d::Zero();  ///< J' residual of the fitted camera
-  Matrix6Xd H_pose_shared;                                   ///< with the fitted camera's own unknowns
-  Eigen::MatrixXd H_shared;
-  int num_corners = 0;  ///< of the fitted camera
+  explicit ViewEquations(int num_shared) : H_pose_shared(Matrix6Xd::Zero(6, num_shared)) {}
+
+  geometry::Matrix6d H = geometry::Matrix6d::Zero();
+  geometry::Vector6d b = geometry::Vector6d::Zero();         ///< J' residual
+  geometry::Matrix6d H_camera = geometry::Matrix6d::Zero();  ///< share of the fitted camera
+  geometry::Vector6d b_camera = geometry::Vector6d::Zero();
+  Matrix6Xd H_pose_shared;  ///< with the cameras' unknowns
+  int num_corners = 0;      ///< of the fitted camera
 };
 
 /// Derivatives of a pixel: with a motion xi of the board in the rig frame, T_rig_target <- exp(xi) T_rig_target, and with
@@ -74,95 +57,111 @@ std::optional<PixelChange> pixelChange(const Model& model, const geometry::Rigid
   return change;
 }
 
-/// Fit of one camera's delay. With r the residuals of the solution, whose derivatives with all unknowns vanish, m the
-/// board's motion in a millisecond and g = J m on the camera's corners, the delay minimises |r - J xi - K s - g delay|^2
-/// over it, new poses xi of all views, and new parameters and place s of the camera. What these take up is no evidence for a
-/// delay.
+/// Fit of one camera's delay. With r the residuals of the solution, m the board's motion in a millisecond and g = J m on the
+/// camera's corners, the delay minimises |r - J xi - K s - g delay|^2 over it, new poses xi of all views, and new parameters
+/// and places s of all cameras. What these take up is no evidence for a delay. All corners weigh the same, unlike in the
+/// solution, which trusts a camera the less the larger its residuals are: out of sync it would believe one camera alone.
 class DelayFit {
  public:
-  DelayFit(const pipeline::CalibrationResult& result, const std::vector<SeenCorners>& corners, int camera_index)
-      : solution_(result.solution),
-        points_(calibration::warpedPoints(target::cornerPoints(result.target), solution_.board_warp_m)),
-        num_shared_(camera::numParameters(solution_.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model) + 6) {
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      for (const FoundCorner& corner : corners[i].found) {
-        addCorner(solution_.rig.cameras[i], corner, static_cast<int>(i) == camera_index);
-      }
+  struct Scene {
+    const calibration::Solution& solution;
+    const std::vector<Eigen::Vector3d>& points;  ///< of the board
+    const BoardMotions& motions;
+    const std::vector<SeenCorners>& corners;
+  };
+
+  DelayFit(const Scene& scene, int camera_index) : scene_(scene), fitted_camera_(camera_index) {
+    for (const calibration::RigCamera& rig_camera : scene_.solution.rig.cameras) {
+      first_shared_.push_back(num_shared_);
+      num_shared_ += camera::numParameters(rig_camera.camera.model) + 6;
     }
     H_shared_ = Eigen::MatrixXd::Zero(num_shared_, num_shared_);
+    b_shared_ = Eigen::VectorXd::Zero(num_shared_);
     coupling_ = Eigen::VectorXd::Zero(num_shared_);
-    for (const auto& [view, equations] : equations_) {
-      if (equations.num_corners > 0) {
-        H_shared_ +=
-            equations.H_shared - equations.H_pose_shared.transpose() * equations.H.ldlt().solve(equations.H_pose_shared);
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+      for (const FoundCorner& corner : scene.corners[i].found) {
+        addCorner(corner, static_cast<int>(i));
       }
     }
-  }
-
-  void addView(int view, const geometry::Vector6d& motion_per_ms) {
-    const auto found = equations_.find(view);
-    if (found == equations_.end() || found->second.num_corners == 0) {
-      return;
+    for (const auto& [view, equations] : equations_) {
+      const auto H_pose = equations.H.ldlt();
+      H_shared_ -= equations.H_pose_shared.transpose() * H_pose.solve(equations.H_pose_shared);
+      b_shared_ -= equations.H_pose_shared.transpose() * H_pose.solve(equations.b);
+      addMotion(equations, *scene.motions[static_cast<std::size_t>(view)]);
     }
-    const ViewEquations& equations = found->second;
-    const geometry::Vector6d g_pose = equations.H_camera * motion_per_ms;
-    const geometry::Vector6d absorbed = equations.H.ldlt().solve(g_pose);
-    product_ += motion_per_ms.dot(equations.b_camera);
-    squared_velocity_ += motion_per_ms.dot(g_pose);
-    information_ += motion_per_ms.dot(g_pose) - g_pose.dot(absorbed);
-    coupling_ += equations.H_pose_shared.transpose() * (motion_per_ms - absorbed);
-    num_moving_ += equations.num_corners;
   }
 
   /// False where the board does not move, or where other unknowns can take its motion up.
   bool isDetermined() const { return information() > kMinInformation * squared_velocity_ && squared_velocity_ > 0.0; }
-  double delay_ns() const { return kNsPerMs * product_ / information(); }
+  double delay_ns() const { return kNsPerMs * (product_ - coupling_.dot(cameraUnknowns(b_shared_))) / information(); }
   double delayStdev_ns() const { return kNsPerMs * std::sqrt(squares_px2_ / std::max(1, num_components_) / information()); }
   double speedPerMs_px() const { return std::sqrt(squared_velocity_ / std::max(1, num_moving_)); }
 
  private:
   static constexpr double kMinInformation = 1e-6;  // of that which known poses and cameras would give
 
-  double information() const {
-    return information_ - coupling_.dot(H_shared_.completeOrthogonalDecomposition().solve(coupling_));
+  int numOwn() const {
+    return camera::numParameters(scene_.solution.rig.cameras[static_cast<std::size_t>(fitted_camera_)].camera.model) + 6;
+  }
+  Eigen::VectorXd cameraUnknowns(const Eigen::VectorXd& right) const {
+    return H_shared_.completeOrthogonalDecomposition().solve(right);
+  }
+  double information() const { return information_ - coupling_.dot(cameraUnknowns(coupling_)); }
+
+  void addMotion(const ViewEquations& equations, const geometry::Vector6d& motion_per_ms) {
+    const geometry::Vector6d g_pose = equations.H_camera * motion_per_ms;
+    const geometry::Vector6d absorbed = equations.H.ldlt().solve(g_pose);
+    product_ += motion_per_ms.dot(equations.b_camera) - absorbed.dot(equations.b);
+    squared_velocity_ += motion_per_ms.dot(g_pose);
+    information_ += motion_per_ms.dot(g_pose) - g_pose.dot(absorbed);
+    const int first = first_shared_[static_cast<std::size_t>(fitted_camera_)];
+    const auto own = equations.H_pose_shared.middleCols(first, numOwn());
+    coupling_.segment(first, numOwn()) += own.transpose() * motion_per_ms;
+    coupling_ -= equations.H_pose_shared.transpose() * absorbed;
+    num_moving_ += equations.num_corners;
   }
 
-  void addCorner(const calibration::RigCamera& rig_camera, const FoundCorner& corner, bool is_fitted) {
-    if (!corner.used || !corner.residual_px) {
+  void addCorner(const FoundCorner& corner, int camera_index) {
+    if (!corner.used || !corner.residual_px || !scene_.motions[static_cast<std::size_t>(corner.view)]) {
       return;
     }
-    const Eigen::Vector3d p_rig =
-        solution_.T_rig_target[static_cast<std::size_t>(corner.view)] * points_[static_cast<std::size_t>(corner.corner_id)];
+    const calibration::RigCamera& rig_camera = scene_.solution.rig.cameras[static_cast<std::size_t>(camera_index)];
+    const Eigen::Vector3d p_rig = scene_.solution.T_rig_target[static_cast<std::size_t>(corner.view)] *
+                                  scene_.points[static_cast<std::size_t>(corner.corner_id)];
     const auto derive = [&](const auto& model) { return pixelChange(model, rig_camera.T_cam_rig, p_rig); };
     const std::optional<PixelChange> change = std::visit(derive, rig_camera.camera.model);
     if (!change) {
       return;
     }
-    ViewEquations& equations = equations_[corner.view];
     const auto& J = change->J_px_pose;
-    equations.H += J.transpose() * J;
-    squares_px2_ += corner.residual_px->squaredNorm();
+    const Matrix2Xd& K = change->J_px_shared;
+    const Eigen::Vector2d& r = *corner.residual_px;
+    const int first = first_shared_[static_cast<std::size_t>(camera_index)];
+    H_shared_.block(first, first, K.cols(), K.cols()) += K.transpose() * K;
+    b_shared_.segment(first, K.cols()) += K.transpose() * r;
+    squares_px2_ += r.squaredNorm();
     num_components_ += 2;
-    if (!is_fitted) {
-      return;
+
+    ViewEquations& equations = equations_.try_emplace(corner.view, num_shared_).first->second;
+    equations.H += J.transpose() * J;
+    equations.b += J.transpose() * r;
+    equations.H_pose_shared.middleCols(first, K.cols()) += J.transpose() * K;
+    if (camera_index == fitted_camera_) {
+      equations.H_camera += J.transpose() * J;
+      equations.b_camera += J.transpose() * r;
+      ++equations.num_corners;
     }
-    if (equations.num_corners++ == 0) {
-      equations.H_pose_shared = Matrix6Xd::Zero(6, num_shared_);
-      equations.H_shared = Eigen::MatrixXd::Zero(num_shared_, num_shared_);
-    }
-    equations.H_camera += J.transpose() * J;
-    equations.b_camera += J.transpose() * *corner.residual_px;
-    equations.H_pose_shared += J.transpose() * change->J_px_shared;
-    equations.H_shared += change->J_px_shared.transpose() * change->J_px_shared;
   }
 
-  const calibration::Solution& solution_;
-  const std::vector<Eigen::Vector3d> points_;
-  const int num_shared_;
+  const Scene scene_;
+  const int fitted_camera_;
+  std::vector<int> first_shared_;  ///< column of each camera
+  int num_shared_ = 0;
   std::map<int, ViewEquations> equations_;
-  Eigen::MatrixXd H_shared_;  ///< of the camera's own unknowns, poses eliminated
+  Eigen::MatrixXd H_shared_;  ///< of the cameras' unknowns, poses eliminated
+  Eigen::VectorXd b_shared_;  ///< K' r, poses eliminated
   Eigen::VectorXd coupling_;  ///< of these with the delay
-  double product_ = 0.0;      ///< g' r
+  double product_ = 0.0;      ///< g' r, poses eliminated
   double information_ = 0.0;  ///< g' g, poses eliminated
   double squared_velocity_ = 0.0;
   double squares_px2_ = 0.0;
@@ -174,12 +173,14 @@ class DelayFit {
 
 std::vector<CameraTiming> cameraTimings(const pipeline::CalibrationResult& result, const std::vector<SeenCorners>& corners) {
   const calibration::Solution& solution = result.solution;
-  const auto motions = boardMotions(solution);
+  const std::vector<Eigen::Vector3d> points =
+      calibration::warpedPoints(target::cornerPoints(result.target), solution.board_warp_m);
+  const BoardMotions motions = boardMotions(solution, points);
   std::vector<CameraTiming> timings;
   for (std::size_t i = 1; i < corners.size(); ++i) {
     CameraTiming timing;
     timing.camera_index = static_cast<int>(i);
-    DelayFit fit(result, corners, timing.camera_index);
+    const DelayFit fit({solution, points, motions, corners}, timing.camera_index);
     std::vector<double> stamp_differences_ns;
     for (std::size_t view = 0; view < solution.views.size(); ++view) {
       const std::vector<observation::CameraView>& images = solution.views[view].cameras;
@@ -190,9 +191,8 @@ std::vector<CameraTiming> cameraTimings(const pipeline::CalibrationResult& resul
       }
       const observation::CameraView& other = image == images.begin() ? images[1] : images[0];
       stamp_differences_ns.push_back(std::abs(static_cast<double>(image->stamp_ns - other.stamp_ns)));
-      fit.addView(static_cast<int>(view), *motions[view]);
     }
-    if (fit.isDetermined()) {
+    if (!stamp_differences_ns.empty() && fit.isDetermined()) {
       timing.num_views = static_cast<int>(stamp_differences_ns.size());
       timing.median_stamp_ns = upperMedian(stamp_differences_ns);
       timing.delay_ns = fit.delay_ns();

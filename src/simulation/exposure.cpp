@@ -94,9 +94,7 @@ ExposureMaker::ExposureMaker(const Scene& scene, const SceneCamera& camera)
       board_light_(camera, scene.lighting) {}
 
 std::vector<geometry::Rigid3> ExposureMaker::boardPoses(const Scene& scene, const SceneFrame& frame) const {
-  const auto pose_at = [&](double s) {
-    return camera_.T_cam_rig * frame.T_rig_target * geometry::expRigid(s * frame.motion);
-  };
+  const auto pose_at = [&](double s) { return boardPose(camera_, frame) * geometry::expRigid(s * frame.motion); };
   double longest_px = 0.0;
   for (const Eigen::Vector3d& p_target : target::cornerPoints(scene.target)) {
     const auto first = camera::project(camera_.camera.model, pose_at(-0.5) * p_target);
@@ -117,7 +115,7 @@ std::vector<geometry::Rigid3> ExposureMaker::boardPoses(const Scene& scene, cons
 Exposure ExposureMaker::expose(const Scene& scene, const BoardPattern& pattern, const Room& room,
                                const SceneFrame& frame) const {
   const cv::Mat1f behind = room.view(room_directions_, frame.heading_rad);
-  const geometry::Rigid3 T_cam_target = camera_.T_cam_rig * frame.T_rig_target;
+  const geometry::Rigid3 T_cam_target = boardPose(camera_, frame);
   const double side = isBehindBoard(T_cam_target) ? -1.0 : 1.0;
   const cv::Mat1f on_board = board_light_.onBoard(side * (T_cam_target.rotation * Eigen::Vector3d::UnitZ()));
   MomentSum sum(behind, on_board, scene.lighting);

@@ -45,13 +45,19 @@ class Swing {
   double second_rad_;
 };
 
+int framesPerCamera(const RecordingOptions& options) {
+  return options.num_frames / static_cast<int>(options.cameras.size());
+}
+
 /// How the board goes through the field of view of one camera, for time from 0 to 1.
 class BoardPath {
  public:
-  BoardPath(const SceneCamera& lens, const BoardExtent& board, int num_frames, Random& random)
+  BoardPath(const SceneCamera& lens, const RecordingOptions& options, Random& random)
       : lens_(lens),
-        board_(board),
-        num_turns_(std::clamp(kTurnsOfRootFrames * std::sqrt(num_frames), kMinTurns, kMaxTurns)),
+        board_(boardExtent(options.target)),
+        reach_ratio_(options.reach_ratio),
+        max_tilt_rad_(options.max_tilt_rad),
+        num_turns_(std::clamp(kTurnsOfRootFrames * std::sqrt(framesPerCamera(options)), kMinTurns, kMaxTurns)),
         first_azimuth_rad_(random.uniform(0.0, 2.0 * M_PI)),
         size_(num_turns_, random),
         tilt_x_(kSwingsPerTurn * num_turns_, random),
@@ -59,7 +65,6 @@ class BoardPath {
         roll_(num_turns_, random) {}
 
   geometry::Rigid3 T_cam_target(double time) const {
-    constexpr double kMaxTiltRad = 0.75;
     constexpr double kMaxRollRad = 0.8;
     constexpr double kMeanSizeOfImage = 0.45;
     constexpr double kSizeSwing = 0.38;
@@ -69,7 +74,7 @@ class BoardPath {
     const double distance_m = board_.size_m / (board_px * aim.rad_per_px);
     const Eigen::Quaterniond to_aim = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), aim.ray);
     const Eigen::Quaterniond tilt =
-        geometry::expRotation(kMaxTiltRad * Eigen::Vector3d(tilt_x_.at(time), tilt_y_.at(time), 0.0));
+        geometry::expRotation(max_tilt_rad_ * Eigen::Vector3d(tilt_x_.at(time), tilt_y_.at(time), 0.0));
     const Eigen::Quaterniond roll = geometry::expRotation({0.0, 0.0, kMaxRollRad * roll_.at(time)});
     const Eigen::Quaterniond facing(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
     const Eigen::Quaterniond R_cam_target = to_aim * tilt * roll * facing;
@@ -89,12 +94,11 @@ class BoardPath {
 
   /// From the axis to the rim on a spiral whose turns and steps cover the image evenly.
   Aim aimAt(double time) const {
-    constexpr double kOutermost = 0.95;
     const Eigen::Vector2d centre_px = principalPoint(lens_.camera);
     const double spiral = std::sqrt(time);
     const double azimuth_rad = first_azimuth_rad_ + 2.0 * M_PI * num_turns_ * spiral;
     const Eigen::Vector2d direction(std::cos(azimuth_rad), std::sin(azimuth_rad));
-    double radius_px = kOutermost * spiral * rimAlong(centre_px, direction);
+    double radius_px = reach_ratio_ * spiral * rimAlong(centre_px, direction);
     for (;; radius_px *= 0.98) {
       const Eigen::Vector2d px = centre_px + radius_px * direction;
       const auto ray = camera::unproject(lens_.camera.model, px);
@@ -118,7 +122,9 @@ class BoardPath {
   }
 
   const SceneCamera& lens_;
-  const BoardExtent& board_;
+  BoardExtent board_;
+  double reach_ratio_;
+  double max_tilt_rad_;
   double num_turns_;
   double first_azimuth_rad_;
   Swing size_;
@@ -214,11 +220,10 @@ std::vector<SceneCamera> makeRig(const std::vector<SceneCamera>& lenses, double 
 Scene makeRecording(const RecordingOptions& options) {
   check(options);
   Random random(options.seed);
-  const BoardExtent board = boardExtent(options.target);
   const int num_cameras = static_cast<int>(options.cameras.size());
   std::vector<BoardPath> paths;
   for (const SceneCamera& camera : options.cameras) {
-    paths.emplace_back(camera, board, options.num_frames / num_cameras, random);
+    paths.emplace_back(camera, options, random);
   }
   const std::vector<bool> is_blurred = chooseFrames(options.num_frames, options.blurred_ratio, random);
   const std::vector<bool> has_hand = chooseFrames(options.num_frames, options.hand_ratio, random);
@@ -230,6 +235,7 @@ Scene makeRecording(const RecordingOptions& options) {
   scene.cameras = options.cameras;
   scene.sensor = options.sensor;
   scene.seed = options.seed;
+  const double period = static_cast<double>(num_cameras) / options.num_frames;  // between frames, of a path
   for (int i = 0; i < options.num_frames; ++i) {
     const double turn = static_cast<double>(i) * num_cameras / options.num_frames;
     const auto camera_index = static_cast<std::size_t>(turn);
@@ -237,8 +243,11 @@ Scene makeRecording(const RecordingOptions& options) {
     SceneFrame frame;
     frame.exposure_ratio = options.exposure_ratio;
     frame.stamp_ns = kFirstStampNs + std::llround(i * kNsPerSecond / options.rate_hz);
-    frame.T_rig_target =
-        lens.T_cam_rig.inverse() * paths[camera_index].T_cam_target(turn - static_cast<double>(camera_index));
+    const double time = turn - static_cast<double>(camera_index);
+    const geometry::Rigid3 T_cam_target = paths[camera_index].T_cam_target(time);
+    const geometry::Rigid3 T_cam_next = paths[camera_index].T_cam_target(time + period);
+    frame.T_rig_target = lens.T_cam_rig.inverse() * T_cam_target;
+    frame.velocity = options.rate_hz * geometry::logRigid(T_cam_target.inverse() * T_cam_next);
     frame.heading_rad = first_heading_rad + 0.5 * heading.at(static_cast<double>(i) / options.num_frames);
     if (is_blurred[static_cast<std::size_t>(i)]) {
       frame.motion = shake(lens, frame, options, random.uniform(0.15, 1.0) * options.max_blur_px, random);

@@ -53,7 +53,7 @@ void measureMotion(std::vector<TrueCorner>& corners, const Scene& scene, const S
                    const SceneFrame& frame) {
   const std::vector<Eigen::Vector3d> points = target::cornerPoints(scene.target);
   const auto place = [&](const TrueCorner& corner, double s) {
-    const geometry::Rigid3 T_cam_target = camera.T_cam_rig * frame.T_rig_target * geometry::expRigid(s * frame.motion);
+    const geometry::Rigid3 T_cam_target = boardPose(camera, frame) * geometry::expRigid(s * frame.motion);
     return camera::project(camera.camera.model, T_cam_target * points[static_cast<std::size_t>(corner.corner_id)]);
   };
   for (TrueCorner& corner : corners) {
@@ -84,7 +84,7 @@ class Renderer::Studio {
     const SceneCamera& camera = scene_.cameras[camera_index];
     const Exposure exposure = expose(frame_index, camera_index);
     RenderedView view;
-    view.T_cam_target = camera.T_cam_rig * scene_.frames[frame_index].T_rig_target;
+    view.T_cam_target = boardPose(camera, scene_.frames[frame_index]);
     view.image = simulation::expose(exposure.light, scene_.sensor, pictureSeed(scene_.seed, frame_index, camera_index));
     view.corners = projectCorners(scene_.target, camera.camera, view.T_cam_target);
     for (TrueCorner& corner : view.corners) {

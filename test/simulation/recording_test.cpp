@@ -129,5 +129,28 @@ TEST(MakeRecording, refusesOptionsWithoutSense) {
   EXPECT_THROW(makeRecording(blind), InputError);
 }
 
+TEST(MakeRecording, keepsTheBoardAsNearAndAsUprightAsAsked) {
+  RecordingOptions near = options("fisheye190");
+  near.reach_ratio = 0.1;
+  near.max_tilt_rad = 0.02;
+  const Eigen::Vector3d centre(0.32, 0.32, 0.0);
+  for (const SceneFrame& frame : makeRecording(near).frames) {
+    const Eigen::Vector3d ray = (frame.T_rig_target * centre).normalized();
+    EXPECT_LT(std::acos(ray.z()), 0.25) << "of 1.66 rad at the rim";
+    EXPECT_LT(std::acos(-(frame.T_rig_target.rotation * Eigen::Vector3d::UnitZ()).dot(ray)), 0.06);
+  }
+}
+
+TEST(MakeRecording, showsACameraWithADelayTheBoardLater) {
+  const RecordingOptions on_time = options("fisheye190");
+  const Scene scene = makeRecording(on_time);
+  SceneCamera late = scene.cameras[0];
+  late.delay_s = 1.0 / on_time.rate_hz;
+  for (std::size_t i = 0; i + 1 < scene.frames.size(); ++i) {
+    const geometry::Rigid3 difference = boardPose(late, scene.frames[i]).inverse() * scene.frames[i + 1].T_rig_target;
+    EXPECT_LT(geometry::logRigid(difference).norm(), 1e-9) << "frame " << i;
+  }
+}
+
 }  // namespace
 }  // namespace tartan_calib::simulation

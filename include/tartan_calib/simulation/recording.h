@@ -14,6 +14,8 @@ struct RecordingOptions {
   std::vector<SceneCamera> cameras;
   int num_frames = 60;
   double rate_hz = 4.0;
+  double reach_ratio = 0.95;    ///< how far the board's centre goes from the axis (0) to the rim of the image (1)
+  double max_tilt_rad = 0.75;   ///< of the board about each of its axes
   double blurred_ratio = 0.0;   ///< part of the frames in which the board moves during the exposure
   double max_blur_px = 8.0;     ///< longest mean path of the corners then
   double hand_ratio = 0.0;      ///< part of the frames with a hand before the board
@@ -28,7 +30,7 @@ std::vector<SceneCamera> makeRig(const std::vector<SceneCamera>& lenses, double 
                                  std::uint64_t seed);
 
 /// A scene in which the board is waved through the whole field of view of each camera in turn: its centre winds from the
-/// lens' axis to the rim, so that half of the board leaves the image there, while distance, tilt and roll swing. The motion
+/// lens' axis towards the rim, where half of the board leaves the image, while distance, tilt and roll swing. The motion
 /// is smooth in time. Throws InputError where an option makes no sense.
 Scene makeRecording(const RecordingOptions& options);
 

@@ -19,6 +19,7 @@ struct SceneCamera {
   geometry::Rigid3 T_cam_rig;
   double image_circle_px = std::numeric_limits<double>::infinity();  ///< radius around the principal point; black outside
   double vignetting = 0.4;  ///< part of the light that is lost at the image circle or in the corners
+  double delay_s = 0.0;     ///< how much later than the frame's stamp it exposes: 0 where the cameras are in sync
 };
 
 /// A forearm with a spread hand that lies on the board, in the target frame.
@@ -34,10 +35,17 @@ struct SceneFrame {
   geometry::Rigid3 T_rig_target;  ///< in the middle of the exposure; the truth
   /// Motion of the board during the exposure: T_rig_target * exp(s * motion) for s from -1/2 to 1/2.
   geometry::Vector6d motion = geometry::Vector6d::Zero();
+  /// Motion of the board per second, which cameras with a delay see: T_rig_target * exp(delay_s * velocity).
+  geometry::Vector6d velocity = geometry::Vector6d::Zero();
   std::optional<Hand> hand;
   double exposure_ratio = 1.0;  ///< of the exposure for which Lighting tells the grey levels
   double heading_rad = 0.0;     ///< of the rig in the room, about the vertical
 };
+
+/// T_cam_target in the middle of the camera's exposure.
+inline geometry::Rigid3 boardPose(const SceneCamera& camera, const SceneFrame& frame) {
+  return camera.T_cam_rig * frame.T_rig_target * geometry::expRigid(camera.delay_s * frame.velocity);
+}
 
 /// Lamp and paper. Grey levels at the lens' axis, under full light.
 struct Lighting {

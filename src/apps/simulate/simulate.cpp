@@ -51,13 +51,21 @@ std::string truthBase(const SimulateOptions& options) {
 
 simulation::Scene makeScene(const SimulateOptions& options) {
   constexpr double kRadPerDegree = M_PI / 180.0;
+  constexpr double kSecondsPerMs = 1e-3;
   simulation::RecordingOptions recording;
   if (!options.target_file.empty()) {
     recording.target = io::loadTarget(options.target_file).target;
   }
   recording.cameras =
       simulation::makeRig(lenses(options), options.baseline_m, options.yaw_deg * kRadPerDegree, options.seed);
+  for (std::size_t k = 0; k < recording.cameras.size(); ++k) {
+    recording.cameras[k].delay_s = kSecondsPerMs * options.delay_ms * static_cast<double>(k);
+  }
   recording.num_frames = options.num_views;
+  recording.reach_ratio = options.reach_ratio;
+  if (options.tilt_deg) {
+    recording.max_tilt_rad = *options.tilt_deg * kRadPerDegree;
+  }
   recording.rate_hz = options.rate_hz;
   recording.blurred_ratio = options.blurred_ratio;
   recording.max_blur_px = options.max_blur_px;

@@ -36,10 +36,13 @@ Cameras
   --cameras N       (1)
   --baseline M      [m] from one camera to the next on its right (0.12)
   --yaw DEG         of each camera against the one before, to the right (0)
+  --delay MS        of each camera against the one before, in when it sees the board; the stamps do not tell (0)
 Views
   --target T.yaml   aprilgrid or checkerboard (Kalibr's 6x6 AprilGrid, tags of 0.088 m)
   --views N         (60)
   --rate HZ         (4)
+  --reach RATIO     how far the board's centre goes, from the axis (0) to the rim of the image (0.95)
+  --tilt DEG        of the board about each of its axes, at most (43)
   --blurred RATIO   part of the views with motion blur (0)
   --motion-blur PX  longest of it (8)
   --hands RATIO     part of the views with a hand before the board (0)
@@ -81,7 +84,9 @@ po::options_description describe() {
   options.add_options()("resolution", po::value<std::string>(), "")("cameras", po::value<int>(), "");
   options.add_options()("baseline", po::value<double>(), "")("yaw", po::value<double>(), "");
   options.add_options()("target", po::value<std::string>(), "")("views", po::value<int>(), "");
-  options.add_options()("rate", po::value<double>(), "")("blurred", po::value<double>(), "");
+  options.add_options()("delay", po::value<double>(), "")("reach", po::value<double>(), "");
+  options.add_options()("tilt", po::value<double>(), "")("rate", po::value<double>(), "")("blurred", po::value<double>(),
+                                                                                          "");
   options.add_options()("motion-blur", po::value<double>(), "")("hands", po::value<double>(), "");
   options.add_options()("exposure", po::value<double>(), "")("psf", po::value<double>(), "")("noise", po::value<double>(),
                                                                                              "");
@@ -131,12 +136,17 @@ void check(const SimulateOptions& options) {
   const auto is_ratio = [](double value) { return value >= 0.0 && value <= 1.0; };
   constexpr int kMaxViews = 1'000'000;
   constexpr int kMaxCameras = 64;
+  constexpr double kMaxTilt_deg = 60.0;
   require(options.output_bag.empty() != options.output_dir.empty(), "give --output-bag or --output-dir; see --help");
   require(options.num_views >= 1 && options.num_views <= kMaxViews, "--views must be from 1 to 1000000");
   require(options.num_cameras >= 1 && options.num_cameras <= kMaxCameras, "--cameras must be from 1 to 64");
   require(options.models.size() == 1 || static_cast<int>(options.models.size()) == options.num_cameras,
           "--models needs one model for all cameras or one for each of the " + std::to_string(options.num_cameras));
   require(std::isfinite(options.baseline_m) && std::isfinite(options.yaw_deg), "--baseline and --yaw must be finite");
+  require(std::isfinite(options.delay_ms), "--delay must be finite");
+  require(is_ratio(options.reach_ratio), "--reach must be from 0 to 1");
+  require(!options.tilt_deg || (*options.tilt_deg >= 0.0 && *options.tilt_deg <= kMaxTilt_deg),
+          "--tilt must be from 0 to 60 degrees");
   require(options.rate_hz > 0.0 && std::isfinite(options.rate_hz), "--rate must be positive");
   require(is_ratio(options.blurred_ratio), "--blurred must be from 0 to 1");
   require(is_ratio(options.hand_ratio), "--hands must be from 0 to 1");
@@ -168,6 +178,8 @@ std::optional<SimulateOptions> parseSimulateOptions(const std::vector<std::strin
   take("baseline", options.baseline_m);
   take("yaw", options.yaw_deg);
   take("target", options.target_file);
+  take("delay", options.delay_ms);
+  take("reach", options.reach_ratio);
   take("views", options.num_views);
   take("rate", options.rate_hz);
   take("blurred", options.blurred_ratio);
@@ -183,6 +195,9 @@ std::optional<SimulateOptions> parseSimulateOptions(const std::vector<std::strin
   }
   options.seed = static_cast<std::uint64_t>(seed);
   take("threads", options.num_threads);
+  if (values.count("tilt") > 0) {
+    options.tilt_deg = values["tilt"].as<double>();
+  }
   if (values.count("resolution") > 0) {
     setResolution(values["resolution"].as<std::string>(), options);
   }

@@ -16,8 +16,11 @@ struct SimulateOptions {
   int height = 0;
   double baseline_m = 0.12;
   double yaw_deg = 0.0;
+  double delay_ms = 0.0;  ///< of each camera against the one before, in what it sees; the stamps are equal
   int num_views = 60;
   double rate_hz = 4.0;
+  double reach_ratio = 0.95;
+  std::optional<double> tilt_deg;  ///< empty: as people tilt boards
   double blurred_ratio = 0.0;
   double max_blur_px = 8.0;
   double hand_ratio = 0.0;
