@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -32,18 +31,16 @@ struct Sighting {
   double px_per_rad;  ///< image scale there, mean of radial and tangential
 };
 
-template <typename Model>
-std::vector<Sighting> sightings(const Model& model, const std::vector<Eigen::Vector3d>& target_points,
+std::vector<Sighting> sightings(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
                                 const std::vector<observation::Corner>& corners) {
   std::vector<Sighting> result;
   result.reserve(corners.size());
   for (const observation::Corner& corner : corners) {
-    Sighting s{target_points.at(static_cast<std::size_t>(corner.corner_id)), corner.px, {}, 0.0};
-    Eigen::Vector2d px;
+    const auto ray = camera::unproject(camera.model, corner.px);
     camera::Matrix23d J_px_ray;
-    if (model.unproject(corner.px, s.ray) && model.project(s.ray, px, &J_px_ray)) {
-      s.px_per_rad = J_px_ray.norm() / std::sqrt(2.0);
-      result.push_back(s);
+    if (ray && camera::project(camera.model, *ray, &J_px_ray)) {
+      const double px_per_rad = J_px_ray.norm() / std::sqrt(2.0);
+      result.push_back({target_points.at(static_cast<std::size_t>(corner.corner_id)), corner.px, *ray, px_per_rad});
     }
   }
   return result;
@@ -66,10 +63,13 @@ std::optional<Rigid3> planarPose(const std::array<const Sighting*, kSampleSize>&
   }
   const Eigen::Matrix3d H = rays * depths.asDiagonal() * inverse;
   const double scale = std::sqrt(H.col(0).norm() * H.col(1).norm());
-  // The nearest two orthonormal columns.
+  // The nearest two orthonormal columns, C (C'C)^(-1/2); the root of a 2x2 matrix M is (M + sqrt(det M) I) / its trace.
   const Eigen::Matrix<double, 3, 2> columns = H.leftCols<2>() / scale;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Matrix<double, 3, 2> r = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::Matrix2d square = columns.transpose() * columns;
+  const double root_det = std::sqrt(square.determinant());
+  const Eigen::Matrix2d root =
+      (square + root_det * Eigen::Matrix2d::Identity()) / std::sqrt(square.trace() + 2.0 * root_det);
+  const Eigen::Matrix<double, 3, 2> r = columns * root.inverse();
   Eigen::Matrix3d R;
   R << r, r.col(0).cross(r.col(1));
   if (!R.allFinite()) {
@@ -121,46 +121,43 @@ struct ScoredPose {
   double median_px = kInfinity;
 };
 
-template <typename Model>
-double medianError(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target) {
+double medianError(const camera::Camera& camera, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target) {
   std::vector<double> errors_px;
   for (const Sighting& s : sightings) {
-    Eigen::Vector2d px;
-    errors_px.push_back(model.project(T_cam_target * s.p_target, px) ? (px - s.px).norm() : kInfinity);
+    const auto px = camera::project(camera, T_cam_target * s.p_target);
+    errors_px.push_back(px ? (*px - s.px).norm() : kInfinity);
   }
   return upperMedian(errors_px);
 }
 
 /// Sum of Cauchy's loss of `scale_px`; corners without an image cost as much as one 10 scales off.
-template <typename Model>
-double robustCost(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target, double scale_px) {
+double robustCost(const camera::Camera& camera, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target,
+                  double scale_px) {
   constexpr double kLost = 100.0;
   double cost = 0.0;
   for (const Sighting& s : sightings) {
-    Eigen::Vector2d px;
-    const double ratio2 =
-        model.project(T_cam_target * s.p_target, px) ? (px - s.px).squaredNorm() / (scale_px * scale_px) : kLost;
+    const auto px = camera::project(camera, T_cam_target * s.p_target);
+    const double ratio2 = px ? (*px - s.px).squaredNorm() / (scale_px * scale_px) : kLost;
     cost += std::log1p(ratio2);
   }
   return cost;
 }
 
 /// The step of Levenberg-Marquardt on Cauchy's loss.
-template <typename Model>
-geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target,
+geometry::Vector6d poseStep(const camera::Camera& camera, const std::vector<Sighting>& sightings, const Rigid3& T_cam_target,
                             double scale_px, double damping) {
   geometry::Matrix6d H = geometry::Matrix6d::Zero();
   geometry::Vector6d descent = geometry::Vector6d::Zero();
   for (const Sighting& s : sightings) {
     const Eigen::Vector3d p_cam = T_cam_target * s.p_target;
-    Eigen::Vector2d px;
     camera::Matrix23d J_px_p;
-    if (!model.project(p_cam, px, &J_px_p)) {
+    const auto px = camera::project(camera, p_cam, &J_px_p);
+    if (!px) {
       continue;
     }
     Eigen::Matrix<double, 2, 6> J;
     J << J_px_p, -J_px_p * geometry::hat(p_cam);
-    const Eigen::Vector2d residual_px = s.px - px;
+    const Eigen::Vector2d residual_px = s.px - *px;
     const double weight = cauchyWeight(residual_px.norm(), scale_px);
     const Eigen::Matrix<double, 6, 2> weighted = weight * J.transpose();
     H.noalias() += weighted.lazyProduct(J);
@@ -170,20 +167,20 @@ geometry::Vector6d poseStep(const Model& model, const std::vector<Sighting>& sig
   return H.ldlt().solve(descent);
 }
 
-template <typename Model>
-Rigid3 refinePose(const Model& model, const std::vector<Sighting>& sightings, Rigid3 T_cam_target, double scale_px) {
+Rigid3 refinePose(const camera::Camera& camera, const std::vector<Sighting>& sightings, Rigid3 T_cam_target,
+                  double scale_px) {
   constexpr int kMaxSteps = 20;
   constexpr double kConverged = 1e-7;  // rad, and share of the distance: far below a hundredth of a pixel
   constexpr double kMaxDamping = 1e6;
   double damping = 1e-4;
-  double cost = robustCost(model, sightings, T_cam_target, scale_px);
+  double cost = robustCost(camera, sightings, T_cam_target, scale_px);
   for (int i = 0; i < kMaxSteps && damping < kMaxDamping; ++i) {
-    const geometry::Vector6d step = poseStep(model, sightings, T_cam_target, scale_px, damping);
+    const geometry::Vector6d step = poseStep(camera, sightings, T_cam_target, scale_px, damping);
     if (!step.allFinite()) {
       break;
     }
     const Rigid3 next = geometry::expRigid(step) * T_cam_target;
-    const double next_cost = robustCost(model, sightings, next, scale_px);
+    const double next_cost = robustCost(camera, sightings, next, scale_px);
     if (next_cost > cost) {
       damping *= 10.0;
       continue;
@@ -206,12 +203,11 @@ double lossScale(double median_px) {
 }
 
 /// Refines twice, the second time with a loss as narrow as the corners are good.
-template <typename Model>
-ScoredPose polishPose(const Model& model, const std::vector<Sighting>& sightings, const Rigid3& start) {
-  ScoredPose pose{start, medianError(model, sightings, start)};
+ScoredPose polishPose(const camera::Camera& camera, const std::vector<Sighting>& sightings, const Rigid3& start) {
+  ScoredPose pose{start, medianError(camera, sightings, start)};
   for (int round = 0; round < 2; ++round) {
-    const Rigid3 refined = refinePose(model, sightings, pose.T_cam_target, lossScale(pose.median_px));
-    const double median_px = medianError(model, sightings, refined);
+    const Rigid3 refined = refinePose(camera, sightings, pose.T_cam_target, lossScale(pose.median_px));
+    const double median_px = medianError(camera, sightings, refined);
     if (median_px > pose.median_px) {
       break;
     }
@@ -238,18 +234,17 @@ Eigen::Vector3d centreOf(const std::vector<Sighting>& sightings) {
   return sum / static_cast<double>(sightings.size());
 }
 
-template <typename Model>
-std::optional<Rigid3> estimate(const Model& model, const std::vector<Sighting>& sightings, double diagonal_px) {
+std::optional<Rigid3> estimate(const camera::Camera& camera, const std::vector<Sighting>& sightings, double diagonal_px) {
   const std::optional<Rigid3> start = searchPose(sightings, kGoodStart * diagonal_px);
   if (!start) {
     return std::nullopt;
   }
-  ScoredPose best = polishPose(model, sightings, *start);
+  ScoredPose best = polishPose(camera, sightings, *start);
   // The mirrored pose is worth polishing only where it does better under the same loss.
   const double scale_px = lossScale(best.median_px);
-  const Rigid3 mirrored = refinePose(model, sightings, mirroredPose(best.T_cam_target, centreOf(sightings)), scale_px);
-  if (robustCost(model, sightings, mirrored, scale_px) < robustCost(model, sightings, best.T_cam_target, scale_px)) {
-    best = polishPose(model, sightings, mirrored);
+  const Rigid3 mirrored = refinePose(camera, sightings, mirroredPose(best.T_cam_target, centreOf(sightings)), scale_px);
+  if (robustCost(camera, sightings, mirrored, scale_px) < robustCost(camera, sightings, best.T_cam_target, scale_px)) {
+    best = polishPose(camera, sightings, mirrored);
   }
   if (!(best.median_px < kExplained * diagonal_px)) {
     return std::nullopt;
@@ -261,16 +256,11 @@ std::optional<Rigid3> estimate(const Model& model, const std::vector<Sighting>& 
 
 std::optional<Rigid3> estimatePose(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
                                    const std::vector<observation::Corner>& corners) {
-  return std::visit(
-      [&](const auto& model) -> std::optional<Rigid3> {
-        const std::vector<Sighting> seen = sightings(model, target_points, corners);
-        if (seen.size() < kSampleSize || 2 * seen.size() < corners.size()) {
-          return std::nullopt;
-        }
-        return estimate(camera::ShiftedModel<std::decay_t<decltype(model)>>{model, camera.pupil}, seen,
-                        std::hypot(camera.width, camera.height));
-      },
-      camera.model);
+  const std::vector<Sighting> seen = sightings(camera, target_points, corners);
+  if (seen.size() < kSampleSize || 2 * seen.size() < corners.size()) {
+    return std::nullopt;
+  }
+  return estimate(camera, seen, std::hypot(camera.width, camera.height));
 }
 
 }  // namespace tartan_calib::calibration

@@ -121,16 +121,33 @@ Eigen::VectorXd upperBound(const CameraModel& model) {
   return std::visit([](const auto& m) -> Eigen::VectorXd { return m.upperBound(); }, model);
 }
 
-std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Vector3d& p_cam) {
-  Eigen::Vector2d px;
-  if (!std::visit([&](const auto& m) { return m.project(p_cam, px); }, model)) {
-    return std::nullopt;
-  }
-  return px;
+std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Vector3d& p_cam, Matrix23d* J_px_pcam,
+                                       ParameterJacobian* J_px_parameters) {
+  const auto projectThrough = [&](const auto& m) -> std::optional<Eigen::Vector2d> {
+    Eigen::Vector2d px;
+    if (J_px_parameters == nullptr) {
+      return m.project(p_cam, px, J_px_pcam) ? std::make_optional(px) : std::nullopt;
+    }
+    typename std::decay_t<decltype(m)>::ParameterJacobian J;
+    if (!m.project(p_cam, px, J_px_pcam, &J)) {
+      return std::nullopt;
+    }
+    *J_px_parameters = J;
+    return px;
+  };
+  return std::visit(projectThrough, model);
 }
 
-std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam) {
-  return project(camera.model, camera.pupil.isZero() ? p_cam : camera.pupil.apply(p_cam));
+std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam, Matrix23d* J_px_pcam) {
+  if (camera.pupil.isZero()) {
+    return project(camera.model, p_cam, J_px_pcam);
+  }
+  Eigen::Matrix3d J_p;
+  const auto px = project(camera.model, camera.pupil.apply(p_cam, &J_p), J_px_pcam);
+  if (px && J_px_pcam != nullptr) {
+    *J_px_pcam *= J_p;
+  }
+  return px;
 }
 
 std::optional<Eigen::Vector3d> unproject(const CameraModel& model, const Eigen::Vector2d& px) {

@@ -123,27 +123,23 @@ struct FitState {
 };
 
 FitState evaluateFit(const camera::CameraModel& model, const std::vector<Ray>& rays) {
-  return std::visit(
-      [&rays](const auto& m) {
-        using Kind = std::decay_t<decltype(m)>;
-        FitState state;
-        state.normal = Eigen::MatrixXd::Zero(Kind::kNumParameters, Kind::kNumParameters);
-        state.right = Eigen::VectorXd::Zero(Kind::kNumParameters);
-        for (const Ray& ray : rays) {
-          Eigen::Vector2d px;
-          typename Kind::ParameterJacobian J;
-          if (!m.project(ray.direction, px, nullptr, &J)) {
-            ++state.num_missing;
-            continue;
-          }
-          const Eigen::Vector2d error = ray.px - px;
-          state.normal += J.transpose() * J;
-          state.right += J.transpose() * error;
-          state.squared_px2 += error.squaredNorm();
-        }
-        return state;
-      },
-      model);
+  const int size = camera::numParameters(model);
+  FitState state;
+  state.normal = Eigen::MatrixXd::Zero(size, size);
+  state.right = Eigen::VectorXd::Zero(size);
+  camera::ParameterJacobian J(2, size);
+  for (const Ray& ray : rays) {
+    const auto px = camera::project(model, ray.direction, nullptr, &J);
+    if (!px) {
+      ++state.num_missing;
+      continue;
+    }
+    const Eigen::Vector2d error = ray.px - *px;
+    state.normal += J.transpose() * J;
+    state.right += J.transpose() * error;
+    state.squared_px2 += error.squaredNorm();
+  }
+  return state;
 }
 
 /// The model whose pixels are nearest to the data sheet's; Levenberg-Marquardt.

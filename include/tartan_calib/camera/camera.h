@@ -22,7 +22,7 @@ using CameraModel =
 
 /// A lens model with its parameters, and the size of the images it belongs to. The pupil stays in place unless a solve was
 /// asked to move it; files of camchains do not know it. Functions below look the model up for every
-/// call; loops over many points use `std::visit` on `model` once, outside.
+/// call, which costs little beside a projection; the solver's innermost loops use `std::visit` on `model` once, outside.
 struct Camera {
   CameraModel model;
   int width = 0;
@@ -59,11 +59,15 @@ CameraModel startModel(const CameraModel& model, double focal_px, const Eigen::V
 Eigen::VectorXd lowerBound(const CameraModel& model);
 Eigen::VectorXd upperBound(const CameraModel& model);
 
+/// d(pixel) / d(parameters of some model).
+using ParameterJacobian = Eigen::Matrix<double, 2, Eigen::Dynamic>;
+
 /// Pixel of a point in the camera frame; empty where the model gives it no image. May lie outside of the image.
-std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Vector3d& p_cam);
+std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Vector3d& p_cam,
+                                       Matrix23d* J_px_pcam = nullptr, ParameterJacobian* J_px_parameters = nullptr);
 
 /// The same through the camera's moving pupil, for points at a finite distance [m].
-std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam);
+std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam, Matrix23d* J_px_pcam = nullptr);
 
 /// Unit ray of a pixel in the camera frame; empty where the model has none.
 std::optional<Eigen::Vector3d> unproject(const CameraModel& model, const Eigen::Vector2d& px);
