@@ -64,7 +64,7 @@ def refinement(_):
     recording = RECORDINGS[0]
     truth = Truth(recording)
     blurred = is_blurred(truth)[truth.asked]
-    bound_px = np.sqrt(np.trace(truth.cov_px2[truth.asked], axis1=1, axis2=2))
+    bound_px = truth.bound_px[truth.asked]
     polar_deg = truth.polar_deg[truth.asked]
     everything = np.ones(len(bound_px), bool)
     parts = [("all", everything), ("sharp", ~blurred), ("blurred", blurred)]

@@ -26,8 +26,8 @@ class Truth:
         self.stamp_ns = np.array([int(row["stamp_ns"]) for row in rows])
         self.corner_id = np.array([int(row["corner_id"]) for row in rows])
         self.px = np.array([[float(row["u_px"]), float(row["v_px"])] for row in rows])
-        self.cov_px2 = np.array([[[float(row["cov_uu"]), float(row["cov_uv"])], [float(row["cov_uv"]), float(row["cov_vv"])]]
-                                 for row in rows])
+        # Root mean square distance of the best possible estimate: of the trace of the Cramer-Rao bound.
+        self.bound_px = np.sqrt([float(row["cov_uu"]) + float(row["cov_vv"]) for row in rows])
         self.hidden = np.array([row["visibility"] == "hidden" for row in seen])
         visible = np.array([row["visibility"] == "visible" for row in seen])
         self.asked = visible & (np.array([float(row["neighbour_px"]) for row in seen]) >= MIN_NEIGHBOUR_PX)
@@ -68,7 +68,7 @@ class Score:
         self.found[self.row[right]] = True
         self.found_row = self.row[right]
         self.found_error_px = self.error_px[right]
-        self.found_bound_ratio = bound_ratios(errors[right], truth.cov_px2[self.found_row])
+        self.found_bound_ratio = self.found_error_px / truth.bound_px[self.found_row]
 
     @property
     def num_false(self):
@@ -77,13 +77,6 @@ class Score:
     @property
     def false_ratio(self):
         return self.num_false / max(1, self.num_reported)
-
-
-def bound_ratios(errors, bounds_px2):
-    """Errors in units of their Cramer-Rao bounds, such that the median of the best possible estimate is 1: its distances in
-    units of the bound have the median sqrt(2 ln 2)."""
-    squares = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(bounds_px2), errors)
-    return np.sqrt(squares / (2.0 * np.log(2.0)))
 
 
 def bands(max_deg):

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <atomic>
 
@@ -40,6 +41,26 @@ TEST(RoundsTest, FindCornersThatDetectionMissed) {
         .rms_px;
   };
   EXPECT_LT(error_px(after), 0.02);
+}
+
+TEST(RoundsTest, ResidualsAreWhatTheCovariancesOfTheCornersSay) {
+  const calibration::Solution solution = run(5).solution;
+  const std::vector<Eigen::Vector3d> points = target::cornerPoints(target::AprilGrid());
+  double squares = 0.0;
+  int freedom = -static_cast<int>(camera::parameters(wideCamera().model).size());
+  for (std::size_t i = 0; i < solution.views.size(); ++i) {
+    freedom -= 6;
+    for (const observation::Corner& corner : solution.views[i].cameras.front().corners) {
+      const auto r_px = calibration::residual(solution.rig, solution.T_rig_target[i],
+                                              points[static_cast<std::size_t>(corner.corner_id)], 0, corner.px);
+      if (corner.used && r_px) {
+        squares += r_px->dot(corner.cov_px2.inverse() * *r_px);
+        freedom += 2;
+      }
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares / freedom), 1.0, 0.1);
+  EXPECT_NEAR(solution.sigma_whitened, 1.0, 0.1);
 }
 
 TEST(RoundsTest, AnImageWithTooFewTagsForRoundZeroTakesPartAfterwards) {
