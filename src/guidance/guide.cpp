@@ -305,7 +305,6 @@ std::optional<Guide::Solve> Guide::nextSolve(const std::function<bool()>& is_can
   num_changes_ = 0;
   pipeline::CalibrateOptions options = options_.calibrate;
   options.num_threads = 1;  // detection goes on beside it
-  options.known_rig = rig_;
   return [corners = keptCorners(), target = target_, options, is_cancelled]() -> std::optional<calibration::Rig> {
     pipeline::Listener listener;
     listener.is_cancelled = is_cancelled;

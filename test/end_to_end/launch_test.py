@@ -4,24 +4,16 @@ import ast
 import json
 import os
 import shlex
-import socket
 import tempfile
 import unittest
 
 import yaml
 
-from programs import SOURCE, run_in_workspace
+from programs import SOURCE, free_port, run_in_workspace
 
 LAUNCH_FILES = sorted(file.name for file in (SOURCE / "launch").glob("*.launch"))
 CALIBRATING = ["calibrate.launch", "calibrate_rig.launch"]
 LIVE = {"record.launch": ["/coverage_node", "/recorder", "/viewer"], "validate.launch": ["/validation_node", "/viewer"]}
-
-
-def free_port():
-    """Of this machine, for a master of the test's own."""
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
 
 
 class LaunchFiles(unittest.TestCase):

@@ -3,10 +3,12 @@
 import filecmp
 import os
 import shutil
+import signal
+import subprocess
 import sys
 import unittest
 
-from programs import SOURCE, Recordings, calibrate, run_in_workspace
+from programs import DEVEL, PROGRAMS, SOURCE, TIMEOUT_S, Recordings, calibrate, free_port, run_in_workspace
 
 
 class LiveNodes(unittest.TestCase):
@@ -17,15 +19,16 @@ class LiveNodes(unittest.TestCase):
         cls.folder = cls.recordings.path
         cls.recordings.simulate("live", "--cameras", 2, "--views", 24, "--resolution", "480x384")
 
-    def rostest(self, name):
-        """Runs test/rostest/<name>.test under a master of its own."""
-        environment = {
+        cls.environment = {
             **os.environ,
             "PATH": os.pathsep.join([os.path.dirname(sys.executable), os.environ["PATH"]]),  # the Python that knows ROS
-            "TARTAN_CALIB_TEST_FOLDER": str(self.folder),
-            "ROS_HOME": str(self.folder / "ros"),
+            "TARTAN_CALIB_TEST_FOLDER": str(cls.folder),
+            "ROS_HOME": str(cls.folder / "ros"),
         }
-        finished = run_in_workspace(f"rostest '{SOURCE}/test/rostest/{name}.test'", env=environment)
+
+    def rostest(self, name):
+        """Runs test/rostest/<name>.test under a master of its own."""
+        finished = run_in_workspace(f"rostest '{SOURCE}/test/rostest/{name}.test'", env=self.environment)
         self.assertEqual(finished.returncode, 0, finished.stdout + finished.stderr)
 
     def test_coverage_node(self):
@@ -39,6 +42,37 @@ class LiveNodes(unittest.TestCase):
 
     def test_validation_node(self):
         self.rostest("validation_node")
+
+    def start(self, command, environment):
+        """Starts a program that runs until the end of the test."""
+        command = f"source '{DEVEL}/setup.bash' && exec {command}"
+        process = subprocess.Popen(["bash", "-c", command], env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait, timeout=TIMEOUT_S)
+        self.addCleanup(process.terminate)
+        return process
+
+    def test_ctrl_c_ends_a_calibration_and_leaves_whole_files_alone(self):
+        port = free_port()
+        environment = {**self.environment, "ROS_MASTER_URI": f"http://localhost:{port}"}
+        master = self.start(f"rosmaster --core -p {port}", environment)
+        while not run_in_workspace("rosparam list", env=environment).stdout:
+            self.assertIsNone(master.poll())
+        prefix = self.folder / "stopped"
+        node = self.start(f"stdbuf -oL {PROGRAMS / 'coverage_node'} _topics:='/cam0/image_raw /cam1/image_raw' _models:='ds-none ds-none' "
+                          f"_target:={self.recordings.target('live')} _output:={prefix}", environment)
+        played = run_in_workspace(f"rosbag play --quiet --wait-for-subscribers --rate 4 {self.folder}/live.bag", env=environment)
+        self.assertEqual(played.returncode, 0, played.stderr)
+        answer = run_in_workspace("rosservice call --wait /coverage_node/calibrate", env=environment)
+        self.assertIn("success: True", answer.stdout)
+        output = ""
+        for line in node.stdout:
+            output += line
+            if "wrote" in line:
+                node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(timeout=TIMEOUT_S), 0, output)
+        self.assertIn("the calibration was stopped; its views are in", output)
+        self.assertEqual([file.name for file in self.folder.glob("stopped*")], ["stopped.bag"])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import subprocess
 import tempfile
 from pathlib import Path
@@ -39,6 +40,13 @@ def interrupt_after(line, program, *arguments):
             if line in text:
                 process.send_signal(signal.SIGINT)
         return process.wait(timeout=TIMEOUT_S), output
+
+
+def free_port():
+    """Of this machine, for a ROS master of the test's own."""
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
 
 
 class Recordings:

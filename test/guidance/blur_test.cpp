@@ -41,8 +41,10 @@ Drawn drawBoard(double angle_deg) {
       {0.5f * static_cast<float>(drawn.gray.cols - 1), 0.5f * static_cast<float>(drawn.gray.rows - 1)}, angle_deg, 1.0);
   cv::warpAffine(drawn.gray, drawn.gray, turn, drawn.gray.size(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(220));
   for (int id = 0; id < size.rows * size.cols; ++id) {
-    const double x = kMargin_px + (id % size.cols + 1) * kSquare_px - 0.5;
-    const double y = kMargin_px + (id / size.cols + 1) * kSquare_px - 0.5;
+    const int col = id % size.cols;
+    const int row = id / size.cols;
+    const double x = kMargin_px + (col + 1) * kSquare_px - 0.5;
+    const double y = kMargin_px + (row + 1) * kSquare_px - 0.5;
     const cv::Mat at_px = turn * cv::Mat1d({3, 1}, {x, y, 1.0});
     drawn.corners.push_back({id, {at_px.at<double>(0), at_px.at<double>(1)}});
   }

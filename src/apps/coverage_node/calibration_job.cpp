@@ -9,6 +9,7 @@
 #include "calibrate_cameras/inputs.h"
 #include "calibrate_cameras/outputs.h"
 #include "calibrate_cameras/report.h"
+#include "common/program.h"
 #include "tartan_calib/io/camchain.h"
 #include "tartan_calib/ros/bag_writer.h"
 #include "tartan_calib/text.h"
@@ -92,6 +93,8 @@ bool CalibrationJob::start(std::vector<KeptView> views) {
   thread_ = std::thread([this, views = std::move(views)] {
     try {
       run(views);
+    } catch (const pipeline::Cancelled&) {  // the node ends, and with it what listener_ has
+      printWarning("the calibration was stopped; its views are in " + arguments_.recording + ", no other file was written");
     } catch (const std::exception& error) {
       listener_.progress(std::string("failed: ") + error.what());
     }
@@ -104,6 +107,7 @@ void CalibrationJob::run(const std::vector<KeptView>& views) {
   const Tell& tell = listener_.progress;
   checkWritable(outputPrefix(arguments_));
   writeBag(views, arguments_.topics, arguments_.recording);
+  num_written_ = views.size();
   tell("wrote " + std::to_string(views.size()) + " views to " + arguments_.recording);
   const Inputs inputs = openInputs(arguments_, [&](const std::string& text) { tell("warning: " + text); });
   const pipeline::CalibrationResult result = calibrate(inputs, pipelineListener(tell));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <thread>
@@ -29,6 +30,9 @@ class CalibrationJob {
   /// False, and nothing happens, while the last one runs.
   bool start(std::vector<guidance::KeptView> views);
 
+  /// Views in the bag that was written last.
+  std::size_t numWritten() const { return num_written_; }
+
  private:
   void run(const std::vector<guidance::KeptView>& views);
 
@@ -36,6 +40,7 @@ class CalibrationJob {
   std::string command_;
   JobListener listener_;
   std::atomic<bool> is_running_{false};
+  std::atomic<std::size_t> num_written_{0};
   std::thread thread_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "common/program.h"
 #include "live/detected_image.h"
 #include "live/messages.h"
 #include "tartan_calib/guidance/blur.h"
@@ -76,6 +77,10 @@ void CoverageNode::run() {
     if (Clock::now() - last_diagnostics_ >= kDiagnosticsInterval) {
       publishDiagnostics();
     }
+  }
+  if (job_.numWritten() < guide_.kept().size()) {
+    printWarning("stopped with " + std::to_string(guide_.kept().size()) + " views, of which " +
+                 std::to_string(job_.numWritten()) + " were written; ~calibrate writes them");
   }
 }
 

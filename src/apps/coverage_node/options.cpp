@@ -4,6 +4,7 @@
 
 #include "calibrate_cameras/session.h"
 #include "common/program.h"
+#include "tartan_calib/io/camchain.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -62,6 +63,9 @@ CoverageOptions coverageOptions(Parameters parameters, const ::ros::NodeHandle& 
   }
 
   options.guide = guideOptions(parameters, options.calibration.calibrate);
+  if (!options.calibration.init_file.empty()) {
+    options.guide.calibrate.known_rig = io::loadCamchain(options.calibration.init_file).rig;
+  }
   options.input.sync_ns = options.calibration.calibrate.approx_sync_ns;
   options.input.max_rate_hz = parameters.number("max_rate", options.input.max_rate_hz, 0.0, kInfinity);
   options.overlay_width_px =
