@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "tartan_calib/threads.h"
+
 namespace tartan_calib::pipeline {
 
 /// Runs tasks on threads and hands their results back in the order in which the tasks were submitted, so that the number of
@@ -18,9 +20,7 @@ template <typename Result>
 class OrderedWorkers {
  public:
   explicit OrderedWorkers(int num_threads) {
-    for (int i = 0; i < num_threads; ++i) {
-      threads_.emplace_back([this] { work(); });
-    }
+    threads_ = startThreads(num_threads, [this] { work(); });
   }
 
   /// Drops tasks that have not begun and waits for the others.
@@ -52,8 +52,12 @@ class OrderedWorkers {
   /// Tasks whose results have not been taken.
   std::size_t numPending() const { return results_.size(); }
 
-  /// Waits for the oldest task; throws what it threw.
+  /// Waits for the oldest task, or does it where no thread could be started; throws what it threw.
   Result next() {
+    if (threads_.empty()) {
+      tasks_.front()();
+      tasks_.pop_front();
+    }
     std::future<Result> result = std::move(results_.front());
     results_.pop_front();
     return result.get();

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "listen.h"
 #include "ordered_workers.h"
 #include "tartan_calib/pipeline/calibrate.h"
+#include "tartan_calib/threads.h"
 
 namespace tartan_calib::pipeline {
 
@@ -19,9 +19,7 @@ constexpr std::size_t kImagesPerThread = 2;
 template <typename Result, typename Work, typename Collect>
 void streamImages(const CameraStream& stream, int num_threads, const Listener& listener, Progress progress, const Work& work,
                   const Collect& collect) {
-  if (num_threads <= 0) {
-    num_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  }
+  num_threads = numThreads(num_threads);
   const auto max_pending = kImagesPerThread * static_cast<std::size_t>(num_threads);
   const ImageSource next_image = stream.open();
   progress.done = 0;

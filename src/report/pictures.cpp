@@ -1,5 +1,6 @@
 #include "tartan_calib/report/pictures.h"
 #include "tartan_calib/text.h"
+#include "tartan_calib/threads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
-#include <thread>
 
 namespace tartan_calib::report {
 namespace {
@@ -81,10 +81,8 @@ class Photographer {
 
   void run(const pipeline::CameraStream& stream, const PictureOptions& options) {
     const pipeline::ImageSource source = stream.open();
-    const int num_threads =
-        options.num_threads > 0 ? options.num_threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     std::vector<std::future<void>> workers;
-    for (int i = 0; i < num_threads; ++i) {
+    for (int i = 0; i < numThreads(options.num_threads); ++i) {
       workers.push_back(std::async(std::launch::async, [&] { work(source, options); }));
     }
     for (std::future<void>& worker : workers) {

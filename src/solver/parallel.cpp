@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "tartan_calib/threads.h"
+
 namespace tartan_calib::solver {
 namespace {
 
@@ -19,8 +21,7 @@ Chunk chunkAt(int index, int num_items) {
 }  // namespace
 
 void forEachChunk(int num_items, int num_threads, const std::function<void(const Chunk&)>& work) {
-  const int num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int num_workers = std::min({num_threads > 0 ? num_threads : num_cores, kNumChunks, std::max(1, num_items)});
+  const int num_workers = std::min({numThreads(num_threads), kNumChunks, std::max(1, num_items)});
 
   std::atomic<int> next_chunk{0};
   std::exception_ptr failure;
@@ -37,10 +38,7 @@ void forEachChunk(int num_items, int num_threads, const std::function<void(const
     }
   };
 
-  std::vector<std::thread> threads;
-  for (int i = 1; i < num_workers; ++i) {
-    threads.emplace_back(worker);
-  }
+  std::vector<std::thread> threads = startThreads(num_workers - 1, worker);
   worker();
   for (std::thread& thread : threads) {
     thread.join();

@@ -61,6 +61,12 @@ class WrongCommandLine(BadInput):
         topics = ["/cam0/image_raw", "/cam1/image_raw"]
         self.assert_refused(self.calibrate(topics=topics), 2, "one camera model per topic")
 
+    def test_far_too_many_threads_are_fewer(self):
+        finished = self.calibrate(extra=["--threads", "1000000", "--max-rounds", "0"])
+        self.assertEqual((finished.returncode, finished.stderr), (0, ""))
+        for name in ("camchain.yaml", "results-cam.txt", "calibration.yaml"):
+            (self.folder / f"rig-{name}").unlink()
+
     def test_an_unknown_model_is_answered_with_the_known_ones(self):
         self.assert_refused(self.calibrate(models=["pinhole"]), 1, "model: pinhole.", "pinhole-radtan", "ds-none")
 

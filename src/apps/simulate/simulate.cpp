@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core.hpp>
-#include <thread>
 
 #include "simulate/recording_writer.h"
 #include "simulate/truth.h"
@@ -13,6 +12,7 @@
 #include "tartan_calib/simulation/lens.h"
 #include "tartan_calib/simulation/recording.h"
 #include "tartan_calib/simulation/renderer.h"
+#include "tartan_calib/threads.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -82,14 +82,12 @@ SimulateSummary simulate(const SimulateOptions& options) {
       options.output_bag.empty() ? makeFolderWriter(options.output_dir) : makeBagWriter(options.output_bag);
   Truth truth(renderer.scene());
   SimulateSummary summary;
-  const int num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   cv::setNumThreads(1);  // threads work on frames
-  simulation::renderAll(renderer, options.num_threads > 0 ? options.num_threads : num_cores,
-                        [&](const simulation::RenderedFrame& frame) {
-                          writer->write(frame);
-                          truth.add(frame);
-                          summary.num_images += frame.views.size();
-                        });
+  simulation::renderAll(renderer, numThreads(options.num_threads), [&](const simulation::RenderedFrame& frame) {
+    writer->write(frame);
+    truth.add(frame);
+    summary.num_images += frame.views.size();
+  });
   summary.base = truthBase(options);
   summary.num_corners = truth.numCorners();
   summary.num_visible_corners = truth.numVisibleCorners();
