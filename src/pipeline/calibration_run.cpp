@@ -27,16 +27,17 @@ constexpr std::size_t kMinCorners = 4;  ///< fewer determine no pose
 /// Why no image of a camera can take part, and what helps.
 std::string noUsableImages(const CameraCorners& corners, const target::Target& target, int min_tags) {
   std::string text = "none of its " + std::to_string(corners.num_images) + " images shows ";
+  const std::optional<std::string> note = boardNote(corners, target);
   const auto* grid = std::get_if<target::AprilGrid>(&target);
   if (corners.images.empty() || grid == nullptr) {
-    text += "the target: " + otherSizeNote(corners, target).value_or("check target file, focus and exposure");
+    text += "the target: " + note.value_or("check target file, focus and exposure");
   } else {
     int most = 0;
     for (const CameraView& image : corners.images) {
       most = std::max(most, countTags(*grid, image.corners));
     }
     text += std::to_string(min_tags) + " tags, the smallest number for taking part; the best shows " + std::to_string(most) +
-            ": come closer with the board, or check the target's tagRows and tagCols";
+            ": " + note.value_or("come closer with the board, or check the target's tagRows and tagCols");
   }
   return text;
 }

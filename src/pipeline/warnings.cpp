@@ -159,33 +159,6 @@ std::optional<std::string> hemisphereNote(const CalibrationResult& result, int c
              max_angle_rad * kDegreesPerRadian, camera::modelName(model).c_str());
 }
 
-std::optional<std::string> otherSizeNote(const CameraCorners& corners, const target::Target& target) {
-  std::size_t num_sized = 0;
-  std::size_t num_images = 0;
-  detection::BoardSize shown;
-  for (const auto& [size, count] : corners.counts.other_sizes) {
-    const auto num_with_size = static_cast<std::size_t>(count);
-    num_sized += num_with_size;
-    if (num_with_size > num_images) {
-      num_images = num_with_size;
-      shown = size;
-    }
-  }
-  if (num_images <= corners.images.size() || 2 * num_images <= num_sized) {
-    return std::nullopt;
-  }
-  const auto& [first, second] = shown;
-  if (const auto* grid = std::get_if<target::AprilGrid>(&target)) {
-    return format("%zu images show %d rows and %d columns of tags, the target says %d and %d: set tagRows and tagCols",
-                  num_images, first, second, grid->tag_rows, grid->tag_cols);
-  }
-  if (const auto* board = std::get_if<target::Checkerboard>(&target)) {
-    return format("%zu images show %dx%d inner corners, the target says %dx%d: set targetCols and targetRows", num_images,
-                  first, second, std::min(board->cols, board->rows), std::max(board->cols, board->rows));
-  }
-  return std::nullopt;
-}
-
 std::optional<std::string> pupilNote(const CalibrationResult& result, int camera_index) {
   const auto at = static_cast<std::size_t>(camera_index);
   const camera::Camera& camera = result.solution.rig.cameras[at].camera;
@@ -196,45 +169,6 @@ std::optional<std::string> pupilNote(const CalibrationResult& result, int camera
   return cameraName(camera_index) +
          format(": the entrance pupil moves by %.2f mm from the axis to %.0f degrees; the model alone holds for far points",
                 1e3 * camera.pupil.at_m(angle_rad), angle_rad * kDegreesPerRadian);
-}
-
-std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target) {
-  std::vector<std::string> warnings;
-  const auto add = [&](const std::string& text) { warnings.push_back(cameraName(camera_index) + ": " + text); };
-  if (corners.num_other_size > 0) {
-    add(format("%zu images are not %dx%d as the others and were skipped", corners.num_other_size, corners.width,
-               corners.height));
-  }
-  if (corners.num_unreadable > 0) {
-    add(std::to_string(corners.num_unreadable) +
-        " images cannot be read and were skipped; the first: " + corners.unreadable_reason);
-  }
-  if (corners.num_same_stamp > 0) {
-    add(format("%zu images have the stamp of the image before and were skipped", corners.num_same_stamp));
-  }
-  if (const std::optional<std::string> note = otherSizeNote(corners, target); note && !corners.images.empty()) {
-    add(*note);
-  }
-  const detection::DetectionCounts& counts = corners.counts;
-  if (counts.duplicate_tags > 0) {
-    add(format("%d tags were dropped because their id was there twice in an image: is a second board in view?",
-               counts.duplicate_tags));
-  }
-  if (counts.foreign_tags > 0) {
-    add(format(
-        "%d tags were dropped that the target does not have at that place: are tagRows, tagCols and codeOffset right?",
-        counts.foreign_tags));
-  }
-  if (counts.mirrored_tags > 0) {
-    add(format("%d tags were dropped because they are mirrored: is the image flipped, or the board seen in a mirror?",
-               counts.mirrored_tags));
-  }
-  const auto* grid = std::get_if<target::AprilGrid>(&target);
-  if (grid != nullptr && counts.other_border_tags > counts.tags) {
-    add(format("the tags have a border of %d cells, the target says %d: set tagBorder: %d in the target file",
-               3 - grid->border_cells, grid->border_cells, 3 - grid->border_cells));
-  }
-  return warnings;
 }
 
 std::vector<std::string> resultWarnings(const CalibrationResult& result) {

@@ -124,6 +124,9 @@ class WrongRecording(BadInput):
                                               "rowSpacingMeters: 0.02\ncolSpacingMeters: 0.02\n")
         self.assert_refused(self.calibrate(target=board), 1, "/cam0/image_raw")
 
+    def test_a_board_with_another_border_is_answered_with_the_remedy(self):
+        self.assert_refused(self.calibrate(target=self.board(tagBorder=1)), 1, "none of its", "border of 2 cells", "tagBorder: 2")
+
     def test_a_board_of_another_size_is_answered_with_its_size(self):
         board = self.board(tagCols=5, tagRows=5)
         self.assert_refused(self.calibrate(target=board), 1, "/cam0/image_raw", "6 rows and 6 columns", "5 and 5", "tagCols")

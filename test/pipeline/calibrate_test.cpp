@@ -188,9 +188,15 @@ TEST(CalibrateCorners, ACameraWithoutTheTargetIsNamedInKalibrsWords) {
   for (observation::CameraView& image : cameras[0].images) {
     image.corners.resize(6);
   }
-  expectMessage<CalibrationError>(run,
-                                  {"Could not initialize the intrinsics for camera with topic: /cam0", "7 tags", "best"});
+  expectMessage<CalibrationError>(
+      run, {"Could not initialize the intrinsics for camera with topic: /cam0", "7 tags", "best", "come closer"});
+  cameras[0].counts.duplicate_tags = 700;
+  expectMessage<CalibrationError>(run, {"7 tags", "best", "second board in view"});
   cameras[0].images.clear();
+  expectMessage<CalibrationError>(run, {"none of its 15", "second board in view"});
+  cameras[0].counts.mirrored_tags = 701;
+  expectMessage<CalibrationError>(run, {"none of its 15", "they are mirrored"});
+  cameras[0].counts = {};
   expectMessage<CalibrationError>(run,
                                   {"Could not initialize the intrinsics for camera with topic: /cam0", "none of its 15"});
 }

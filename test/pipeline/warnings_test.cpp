@@ -161,6 +161,20 @@ TEST(DetectionWarnings, ABoardOfAnotherSizeIsNamedWhereClearlyMoreImagesShowIt) 
             "cam0: 20 images show 6 rows and 5 columns of tags, the target says 6 and 6: set tagRows and tagCols");
 }
 
+TEST(BoardNote, IsWhatMostTagsWereDroppedFor) {
+  CameraCorners corners;
+  EXPECT_EQ(boardNote(corners, target::AprilGrid()), std::nullopt);
+  corners.counts.tags = 40;
+  corners.counts.mirrored_tags = 40;
+  corners.counts.duplicate_tags = 12;
+  EXPECT_EQ(boardNote(corners, target::AprilGrid()), std::nullopt);
+  corners.counts.mirrored_tags = 41;
+  EXPECT_EQ(boardNote(corners, target::AprilGrid()).value_or("").rfind("41 tags were dropped because they are mirrored", 0),
+            0U);
+  corners.counts.other_border_tags = 100;
+  EXPECT_EQ(boardNote(corners, target::AprilGrid()).value_or("").rfind("the tags have a border of 1 cells", 0), 0U);
+}
+
 TEST(DetectionWarnings, AnotherBorderWidthIsAHintWithTheRemedy) {
   CameraCorners corners;
   corners.counts.tags = 1;

@@ -11,8 +11,9 @@ namespace tartan_calib::pipeline {
 /// Says so where corners beyond 90 degrees took part in a model that Kalibr and OpenCV end at 90 degrees.
 std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index);
 
-/// Says so where clearly more images show a board of another size than one of the target's.
-std::optional<std::string> otherSizeNote(const CameraCorners& corners, const target::Target& target);
+/// What the images show in place of the target, where most say the same: a board of another size, mirrored tags, tags with
+/// another border, two boards.
+std::optional<std::string> boardNote(const CameraCorners& corners, const target::Target& target);
 
 /// Says so where the pupil of the camera was fitted: the model alone then holds for far points.
 std::optional<std::string> pupilNote(const CalibrationResult& result, int camera_index);

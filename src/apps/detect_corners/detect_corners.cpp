@@ -49,9 +49,9 @@ void throwIfNothing(const std::vector<pipeline::CameraCorners>& cameras, const t
     if (camera.num_images > 0 && camera.num_unreadable == camera.num_images) {
       throw InputError(camera.topic + ": no image can be read: " + camera.unreadable_reason);
     }
-    reasons += (reasons.empty() ? "" : "; ") + camera.topic + ": none of its " + std::to_string(camera.num_images) +
-               " images shows the target: " +
-               pipeline::otherSizeNote(camera, target).value_or("check target file, focus and exposure");
+    reasons +=
+        (reasons.empty() ? "" : "; ") + camera.topic + ": none of its " + std::to_string(camera.num_images) +
+        " images shows the target: " + pipeline::boardNote(camera, target).value_or("check target file, focus and exposure");
   }
   throw CalibrationError(reasons);
 }

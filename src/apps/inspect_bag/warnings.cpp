@@ -129,9 +129,10 @@ class CameraWarnings {
 
   void checkBoard() {
     const pipeline::CameraCorners& corners = camera_.corners;
+    const std::optional<std::string> note = pipeline::boardNote(corners, *target_);
     if (corners.images.empty()) {
-      add(pipeline::otherSizeNote(corners, *target_)
-              .value_or("no board was seen in any of the images that were looked at: check the target file, light, focus "
+      add(
+          note.value_or("no board was seen in any of the images that were looked at: check the target file, light, focus "
                         "and distance"));
     } else if (static_cast<double>(corners.images.size()) < kFewBoards_ratio * static_cast<double>(corners.num_images)) {
       add(format("the board was seen in only %zu of %zu images", corners.images.size(), corners.num_images));
@@ -141,7 +142,10 @@ class CameraWarnings {
       add("no corners in the " + joined(empty) + " of the image: move the board there, or the lens is extrapolated");
     }
     for (const std::string& warning : pipeline::detectionWarnings(corners, 0, *target_)) {
-      add(warning.substr(warning.find(": ") + 2));
+      const std::string text = warning.substr(warning.find(": ") + 2);
+      if (!corners.images.empty() || text != note) {
+        add(text);
+      }
     }
   }
 
