@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tartan_calib/median.h"
+
 namespace tartan_calib::calibration {
 namespace {
 
@@ -13,8 +15,11 @@ constexpr double kGrossSigma = 10.0;    ///< robust stdevs: beyond any misfit of
 /// the outer ones, where a model that is too simple errs most, would all be outliers, and the model worse for it.
 constexpr double kUsualMisfit_px = 0.1;
 constexpr double kNeverOutlier_px = 0.3;  ///< no wrong corner lies this close
-constexpr int kMinPoseCorners = 4;        ///< of a view: fewer leave its pose undetermined or ambiguous
-constexpr int kMaxSigmaPasses = 20;       ///< rejection lowers sigma, which rejects more; settles within a few passes
+/// Where a model is too simple by tenths of a pixel it errs most at the rim, there for all corners: 4 stdevs of all corners
+/// would take the rim away. Corners up to this far off may stay there.
+constexpr double kMisfitNeverOutlier_px = 1.2;
+constexpr int kMinPoseCorners = 4;   ///< of a view: fewer leave its pose undetermined or ambiguous
+constexpr int kMaxSigmaPasses = 20;  ///< rejection lowers sigma, which rejects more; settles within a few passes
 
 /// A corner that has an image, with its error.
 struct Candidate {
@@ -22,14 +27,18 @@ struct Candidate {
   Eigen::Vector2d error_px;  ///< measured - predicted
 };
 
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double robustSigma(std::vector<double>& magnitudes) {
+  return magnitudes.empty() ? kMinSigma : std::max(kMinSigma, kMadToSigma * upperMedian(magnitudes));
 }
 
-double robustSigma(std::vector<double>& magnitudes) {
-  return magnitudes.empty() ? kMinSigma : std::max(kMinSigma, kMadToSigma * medianOf(magnitudes));
+/// Of the errors of all corners along the axes [px].
+double robustSigma(const std::vector<Candidate>& candidates) {
+  std::vector<double> magnitudes;
+  for (const Candidate& candidate : candidates) {
+    magnitudes.push_back(std::abs(candidate.error_px.x()));
+    magnitudes.push_back(std::abs(candidate.error_px.y()));
+  }
+  return robustSigma(magnitudes);
 }
 
 /// By camera, all corners that have an image, set to used; the others are marked.
@@ -63,12 +72,7 @@ bool rejectBeyond(const Eigen::Array2d& limit_px, const std::vector<Candidate>& 
 }
 
 void rejectGross(const std::vector<Candidate>& candidates) {
-  std::vector<double> magnitudes;
-  for (const Candidate& candidate : candidates) {
-    magnitudes.push_back(std::abs(candidate.error_px.x()));
-    magnitudes.push_back(std::abs(candidate.error_px.y()));
-  }
-  const double sigma_px = std::max(robustSigma(magnitudes), kUsualMisfit_px);
+  const double sigma_px = std::max(robustSigma(candidates), kUsualMisfit_px);
   rejectBeyond(Eigen::Array2d::Constant(kGrossSigma * sigma_px), candidates);
 }
 
@@ -90,8 +94,9 @@ Eigen::Array2d stdevOfUsed(const std::vector<Candidate>& candidates) {
 
 /// Kalibr's rule, which it applies after every view it adds: here until it rejects no more.
 void rejectBySigma(double outlier_sigma, const std::vector<Candidate>& candidates) {
+  const double never_px = std::clamp(kGrossSigma * robustSigma(candidates), kNeverOutlier_px, kMisfitNeverOutlier_px);
   for (int pass = 0; pass < kMaxSigmaPasses; ++pass) {
-    if (!rejectBeyond((outlier_sigma * stdevOfUsed(candidates)).max(kNeverOutlier_px), candidates)) {
+    if (!rejectBeyond((outlier_sigma * stdevOfUsed(candidates)).max(never_px), candidates)) {
       return;
     }
   }
@@ -161,7 +166,7 @@ std::vector<double> robustSigmas(const BatchProblem& batch) {
   }
   std::vector<double> sigmas;
   for (std::size_t i = 0; i < num_cameras; ++i) {
-    const double misfit = inverse_sigmas[i].empty() ? 0.0 : kUsualMisfit_px * medianOf(inverse_sigmas[i]);
+    const double misfit = inverse_sigmas[i].empty() ? 0.0 : kUsualMisfit_px * upperMedian(inverse_sigmas[i]);
     sigmas.push_back(std::max(robustSigma(magnitudes[i]), misfit));
   }
   return sigmas;

@@ -134,6 +134,24 @@ TEST(Solve, SurvivesWrongCornersInFiveViews) {
   EXPECT_GT(solution.counts[0].outliers, 0);
 }
 
+TEST(Solve, KeepsTheRimOfALensThatTheModelIsTooSimpleFor) {
+  Eigen::VectorXd lens(6);
+  lens << 0.867, 0.769, 633.0, 633.4, 615.4, 516.4;  // of 195 degrees
+  SceneOptions options;
+  options.num_views = 60;
+  options.max_polar_angle_rad = 1.7;
+  Rig rig;
+  rig.cameras.push_back({{camera::withParameters(camera::modelByName("ds-none"), lens), 1224, 1024}, {}});
+  const Scene scene = test_support::simulateScene(rig, options);
+  Problem problem = noisyProblem(scene, 0.02, 5);
+  Eigen::VectorXd start(6);
+  start << 0.6, 1.0, lens(2) / (1.0 + lens(0)), lens(3) / (1.0 + lens(0)), lens(4), lens(5);
+  problem.rig.cameras[0].camera.model = camera::withParameters(camera::modelByName("eucm-none"), start);
+  const Solution solution = solve(problem, {});
+  ASSERT_GT(solution.sigma_px, 0.05);  // four of these are less than the misfit at the rim
+  EXPECT_LT(numCorners(problem.views) - totalUsed(solution), 0.001 * numCorners(problem.views));
+}
+
 TEST(Solve, KeepsEveryCornerWhereOutliersShallStay) {
   const Scene scene = sceneOf({"ds-none"}, 25);
   Problem problem = noisyProblem(scene, kNoise_px, 5);
