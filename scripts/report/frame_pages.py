@@ -4,7 +4,7 @@ import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
-from style import CYCLE, GRADES, GREY, ORANGE, RED, equal_3d_axes, magnification, page, panels
+from style import CYCLE, GRADES, GREY, ORANGE, RED, equal_3d_axes, image_page, magnification, page, panels
 
 WORST_LENGTH_RATIO = 0.012  # of the image's width, for most of the lines
 WRAP_COLUMNS = 125
@@ -26,11 +26,12 @@ def verdict_page(report):
             figure.text(0.07, height, part, color=colour, fontsize=10, va="top")
             height -= 0.026
         height -= 0.008
-    add_summary(figure, report)
+    add_summary(figure, report, height - 0.04)
     yield "Verdict", figure
 
 
-def add_summary(figure, report):
+def add_summary(figure, report, top):
+    """A table below `top`, or as far up as it must be to have its place on the page."""
     columns = ["camera", "model", "views", "corners", "rms (px)", "median (px)", "reach of corners / image (deg)",
                "focal length\nuncertain to (%)", "projection\nuncertain to (px)", "odd against\neven (px)"]
     rows = []
@@ -41,7 +42,8 @@ def add_summary(figure, report):
                      f"{statistics['median_px']:.3f}", f"{camera.max_polar_deg:.0f} / {camera.reach_deg:.0f}",
                      f"{100 * camera.focal_stdev_ratio:.3f}", f"{camera.median_stdev_px:.3f}",
                      "not measured" if difference is None else f"{difference:.3f}"])
-    axes = figure.add_axes([0.05, 0.05, 0.9, 0.055 + 0.028 * len(rows)])
+    size = 0.055 + 0.028 * len(rows)
+    axes = figure.add_axes([0.05, max(0.03, top - size), 0.9, size])
     axes.axis("off")
     table = axes.table(rows, colLabels=columns, cellLoc="center", bbox=[0.0, 0.0, 1.0, 1.0],
                        colWidths=[0.07, 0.12, 0.06, 0.08, 0.08, 0.09, 0.19, 0.11, 0.11, 0.11])
@@ -58,8 +60,8 @@ def rig_page(report):
     axes = figure.add_axes([0.12, 0.08, 0.76, 0.82], projection="3d")
     corners = outline(report.board_m)
     boards = np.einsum("nij,kj->nki", report.T_rig_target[:, :3, :3], corners) + report.T_rig_target[:, None, :3, 3]
-    for board in boards:
-        axes.plot(*upright(board).T, color=GREY, linewidth=0.5, alpha=0.6)
+    gaps = np.full((len(boards), 1, 3), np.nan)
+    axes.plot(*upright(np.concatenate([boards, gaps], axis=1).reshape(-1, 3)).T, color=GREY, linewidth=0.5, alpha=0.6)
     places = np.array([camera.T_rig_cam[:3, 3] for camera in report.cameras])
     length = 0.08 * max(0.2, float(np.ptp(boards.reshape(-1, 3), axis=0).max()))
     for index, camera in enumerate(report.cameras):
@@ -136,8 +138,9 @@ def rounds_page(report, camera):
     by_view = np.bincount(gained.view.astype(int), minlength=len(report.views))
     picture = max(camera.frames, key=lambda frame: by_view[frame["view"]])
     title = f"{camera.name}: corners by round"
-    figure = page(title, "Round 0 detects without a model; every later round looks where the model of the round before says that corners "
-                         "are. The picture is the one in which that found most.")
+    note = ("Round 0 detects without a model; every later round looks where the model of the round before says that corners are. The "
+            "picture is the one in which that found most.")
+    figure = image_page(title, note, camera)
     left, right = panels(figure, 2, left=0.03, wspace=0.2)[0]
     show_picture(left, report, picture)
     here = camera.found.where(camera.found.view == picture["view"])

@@ -1,7 +1,10 @@
 """Kalibr's pages, in Kalibr's order."""
 
 import numpy as np
-from style import AMOUNTS, BLUE, ORANGE, RED, colour_bar, draw_frames, equal_3d_axes, image_axes, page, panels
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from style import (AMOUNTS, BLUE, ORANGE, RED, colour_bar, draw_frames, equal_3d_axes, image_axes, image_page, page,
+                   panels, view_points)
 
 LINES_PER_PAGE = 35
 
@@ -17,9 +20,11 @@ def text_pages(report):
 
 def graph_page(report):
     title = "Inter-camera observations graph (edge weight=#mutual obs.)"
-    figure = page(title, "Cameras that see the board in the same views, joined by the number of corners that both see.")
-    axes = panels(figure, 1)[0, 0]
     count = len(report.cameras)
+    half_height = 0.4 if count == 2 else 1.3
+    figure = page(title, "Cameras that see the board in the same views, joined by the number of corners that both see.",
+                  1.5 + 2.6 * half_height)
+    axes = panels(figure, 1)[0, 0]
     angles = np.pi - 2.0 * np.pi * np.arange(count) / count
     places = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     shared = np.array(report.shared_corners)
@@ -33,8 +38,8 @@ def graph_page(report):
         axes.text(*place, f"{camera.name}\n{camera.topic}", ha="center", va="center", fontsize=10, zorder=2,
                   bbox={"boxstyle": "round,pad=0.6", "facecolor": "#DCEAF5", "edgecolor": BLUE})
     axes.set_xlim(-1.6, 1.6)
-    axes.set_ylim(-1.3, 1.3)
-    axes.set_aspect("equal")
+    axes.set_ylim(-half_height, half_height)
+    axes.set_aspect("auto" if count == 2 else "equal")
     axes.axis("off")
     yield title, figure
 
@@ -65,7 +70,11 @@ def poses_page(report):
     yield title, figure
 
 
-def error_over_angle(report, camera, kind, angles):
+def error_over_angle(report, camera, kind):
+    def angles_of(other):
+        return np.nan_to_num(other.used.polar_deg if kind == "polar" else other.used.azimuth_deg)
+
+    angles = angles_of(camera)
     title = f"{camera.name}: {kind} error"
     figure = page(title, "Length of every used corner's residual over the angle of its measured ray, and how many corners there are.")
     left, right = panels(figure)[0]
@@ -73,7 +82,11 @@ def error_over_angle(report, camera, kind, angles):
     left.plot(angles, errors, ".", color=BLUE, markersize=2, alpha=0.4, rasterized=True)
     left.set_ylim(0, error_limit(report))
     left.set_ylabel("reprojection error (px)")
-    right.hist(angles[np.isfinite(angles)], bins=36, color=BLUE)
+    angles_of_all = [angles_of(other) for other in report.cameras]
+    bins = np.linspace(min(other.min(initial=0.0) for other in angles_of_all),
+                       max(other.max(initial=1.0) for other in angles_of_all), 37)
+    right.hist(angles, bins=bins, color=BLUE)
+    right.set_ylim(0, 1.05 * max(max(np.histogram(other, bins)[0].max() for other in angles_of_all), 1))
     right.set_ylabel("corners")
     for axes in (left, right):
         axes.set_xlabel(f"{kind} angle (deg)")
@@ -89,27 +102,28 @@ def error_limit(report):
 
 def reprojection_page(report, camera):
     title = f"{camera.name}: reprojection errors"
-    figure = page(title, "Used corners, coloured by the view that they are of; measured minus predicted.")
+    figure = image_page(title, "Used corners, coloured by the view that they are of; measured minus predicted.", camera)
     left, right = panels(figure)[0]
     image_axes(left, camera)
-    style = {"c": camera.used.view, "s": 2, "cmap": AMOUNTS, "rasterized": True}
-    left.scatter(camera.used.u_px, camera.used.v_px, **style)
-    points = right.scatter(camera.used.du_px, camera.used.dv_px, **style)
+    view_points(left, camera.used.u_px, camera.used.v_px, camera.used.view)
+    view_points(right, camera.used.du_px, camera.used.dv_px, camera.used.view)
     limit = error_limit(report)
     right.set_xlim(-limit, limit)
     right.set_ylim(-limit, limit)
     right.set_aspect("equal")
     right.set_xlabel("error x (px)")
     right.set_ylabel("error y (px)")
-    colour_bar(figure, points, [left, right], "image index")
+    views = ScalarMappable(Normalize(0, max(len(report.views) - 1, 1)), AMOUNTS)
+    colour_bar(figure, views, [left, right], "view")
     yield title, figure
 
 
 def outliers_page(report):
     cameras = [camera for camera in report.cameras if camera.rejected.size]
     title = "Location of removed outlier corners"
-    figure = page(title, "Corners that were found but did not take part in the solve.")
-    for axes, camera in zip(panels(figure, len(cameras))[0], cameras):
+    figure = image_page(title, "Corners that were found but did not take part in the solve.", cameras[0], has_colour_bar=False)
+    middle = {"left": 0.28, "right": 0.72} if len(cameras) == 1 else {}
+    for axes, camera in zip(panels(figure, len(cameras), **middle)[0], cameras):
         image_axes(axes, camera, f"{camera.name}: {camera.rejected.size} of {camera.found.size} corners")
         axes.plot(camera.rejected.u_px, camera.rejected.v_px, "x", color=RED, markersize=4)
     yield title, figure
@@ -123,8 +137,8 @@ def pages(report):
     if len(report.views) > 2:
         yield from poses_page(report)
     for camera in report.cameras:
-        yield from error_over_angle(report, camera, "polar", camera.used.polar_deg)
-        yield from error_over_angle(report, camera, "azimuthal", camera.used.azimuth_deg)
+        yield from error_over_angle(report, camera, "polar")
+        yield from error_over_angle(report, camera, "azimuthal")
         yield from reprojection_page(report, camera)
     if any(camera.rejected.size for camera in report.cameras):
         yield from outliers_page(report)

@@ -2,7 +2,8 @@
 
 import numpy as np
 from matplotlib.colors import LogNorm
-from style import AMOUNTS, BLUE, GREY, ORANGE, RED, CYCLE, colour_bar, image_axes, legend_above, magnification, page, panels
+from style import (AMOUNTS, BLUE, CYCLE, GREY, ORANGE, RED, colour_bar, image_axes, image_page, legend_above,
+                   magnification, page, panels)
 
 BAND_DEG = 5.0
 MAP_LEVELS_PX = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.3, 1.0, 3.0, 10.0)
@@ -19,12 +20,12 @@ def shared_max(report, values_of):
 
 def coverage_page(report, camera):
     title = f"{camera.name}: coverage"
-    figure = page(title, "Missed: the solution expects the corner in the image, but nothing was found there: hidden, blurred, too "
-                         "small, or outside of the lens's image circle.")
+    figure = image_page(title, "Missed: the solution expects the corner in the image, but nothing was found there: hidden, blurred, "
+                               "too small, or outside of the lens's image circle.", camera)
     left, right = panels(figure)[0]
     image_axes(left, camera, f"{camera.found.size} corners found, {camera.missed.size} missed")
-    cells = left.hexbin(camera.found.u_px, camera.found.v_px, gridsize=40, cmap=AMOUNTS, mincnt=1,
-                        extent=(0, camera.width, 0, camera.height))
+    cells = left.hexbin(camera.found.u_px, camera.found.v_px, gridsize=40, cmap=AMOUNTS, mincnt=1, vmin=1,
+                        vmax=max(2.0, shared_max(report, most_in_a_cell)), extent=(0, camera.width, 0, camera.height))
     left.plot(camera.missed.u_px, camera.missed.v_px, ".", color=RED, markersize=2, label="missed", rasterized=True)
     draw_ring(left, camera)
     legend_above(left)
@@ -37,10 +38,19 @@ def coverage_page(report, camera):
     right.bar(bands[:-1], missed, BAND_DEG, bottom=found, align="edge", color=ORANGE, edgecolor="white", hatch="//",
               label="missed")
     right.set_xlim(0, bands[-1])
+    right.set_ylim(0, 1.05 * shared_max(report, lambda other: np.histogram(np.append(other.found.polar_deg,
+                                                                                     other.missed.polar_deg), bands)[0]))
     right.set_xlabel("angle from the optical axis (deg)")
     right.set_ylabel("corners")
     right.legend()
     yield title, figure
+
+
+def most_in_a_cell(camera):
+    """About the largest number of corners in a hexagon of the coverage, which has half of a rectangle's."""
+    counts, _, _ = np.histogram2d(camera.found.u_px, camera.found.v_px, bins=(40, 46),
+                                  range=((0, camera.width), (0, camera.height)))
+    return np.quantile(counts, 0.995)
 
 
 def draw_ring(axes, camera):
@@ -54,20 +64,27 @@ def draw_ring(axes, camera):
 
 def vectors_page(report, camera):
     title = f"{camera.name}: residual vectors"
-    figure = page(title, "Measured minus predicted, magnified. Left single corners: without direction or pattern where all is well. "
-                         "Right means over cells: what is left there the lens model or the board cannot follow.")
-    left, right = panels(figure)[0]
-    used = camera.used
-    step = max(1, used.size // MAX_ARROWS)
-    chosen = slice(None, None, step)
-    for axes, arrows, what in ((left, (used.u_px[chosen], used.v_px[chosen], used.du_px[chosen], used.dv_px[chosen]), "corners"),
-                               (right, cell_means(camera), "means of cells")):
-        u, v, du, dv = arrows
-        factor = magnification(np.hypot(du, dv), 0.04 * camera.width)
+    note = ("Measured minus predicted, magnified. Left single corners: without direction or pattern where all is well. Right "
+            "means over cells: what is left there the lens model or the board cannot follow.")
+    figure = image_page(title, note, camera, has_colour_bar=False)
+    step = every_nth(camera)
+    for axes, arrows_of, what in ((panels(figure)[0, 0], some_arrows, f"every {step}th corner" if step > 1 else "all corners"),
+                                  (figure.axes[1], cell_means, "means of cells")):
+        u, v, du, dv = arrows_of(camera)
+        factor = min(magnification(np.hypot(*arrows_of(other)[2:]), 0.04 * other.width) for other in report.cameras)
         image_axes(axes, camera, f"{what}, {factor:g} times")
         axes.quiver(u, v, factor * du, factor * dv, color=BLUE, angles="xy", scale_units="xy", scale=1, width=0.002,
                     rasterized=True)
     yield title, figure
+
+
+def every_nth(camera):
+    return max(1, camera.used.size // MAX_ARROWS)
+
+
+def some_arrows(camera):
+    used = camera.used
+    return [column[::every_nth(camera)] for column in (used.u_px, used.v_px, used.du_px, used.dv_px)]
 
 
 def cell_means(camera, columns=16):
@@ -88,23 +105,29 @@ def histogram_page(report, camera):
     left, right = panels(figure)[0]
     limit = 1.05 * max(shared_max(report, lambda other: np.abs(np.append(other.used.du_px, other.used.dv_px))), 1e-6)
     residuals = np.concatenate([camera.used.du_px, camera.used.dv_px])
-    width = max(1.4826 * float(np.median(np.abs(residuals))), 1e-9)
-    for axes, reach in ((left, 5.0 * width), (right, limit)):
+    width = robust_width(camera)
+    for axes, reach in ((left, 5.0 * max(robust_width(other) for other in report.cameras)), (right, limit)):
         edges = np.linspace(-reach, reach, 81)
         counts, _, _ = axes.hist([camera.used.du_px, camera.used.dv_px], bins=edges, stacked=True, color=[BLUE, ORANGE],
-                                 label=["x", "y"])
+                                 label=["x", "y"], histtype="stepfilled")
         middle = np.linspace(-reach, reach, 400)
         expected = residuals.size * (edges[1] - edges[0]) * np.exp(-0.5 * (middle / width) ** 2) / (width * np.sqrt(2 * np.pi))
         axes.plot(middle, expected, color="black", linewidth=1.2, label=f"normal, stdev {width:.3f} px")
         axes.set_xlim(-reach, reach)
         axes.set_xlabel("residual (px)")
         axes.set_ylabel("corners")
-    left.set_title("five stdevs")
+    left.set_title("five stdevs" if len(report.cameras) == 1 else "five stdevs of the worst camera")
     left.legend()
     right.set_title("all, logarithmic: the tails")
     right.set_yscale("log")
     right.set_ylim(0.7, 2.0 * max(counts[-1].max(), 1.0))
     yield title, figure
+
+
+def robust_width(camera):
+    """The stdev of the normal distribution with the residuals' median size."""
+    residuals = np.abs(np.append(camera.used.du_px, camera.used.dv_px))
+    return max(1.4826 * float(np.median(residuals)), 1e-9) if residuals.size else 1e-9
 
 
 def rms_page(report, camera):
@@ -186,15 +209,23 @@ def map_limits(report):
     return 10.0 ** low, 10.0 ** max(high, low + 1.0)
 
 
+def shown_values(camera, column):
+    values = np.ma.masked_invalid(camera.grid(column))
+    return np.ma.masked_where(values.mask | (camera.grid("seen") == 0), values)
+
+
+def is_crossed(shown, level):
+    return bool(shown.count()) and shown.min() < level < shown.max()
+
+
 def draw_map(axes, camera, column, title, norm):
     """A map of pixels over the image in colour, with contours and a thick line at 0.1 px."""
     image_axes(axes, camera, title)
     u, v = camera.grid("u_px"), camera.grid("v_px")
-    values = np.ma.masked_invalid(camera.grid(column))
-    shown = np.ma.masked_where(values.mask | (camera.grid("seen") == 0), values)
+    shown = shown_values(camera, column)
     mesh = axes.pcolormesh(u, v, shown, norm=norm, cmap=AMOUNTS, shading="nearest", rasterized=True)
     for levels, colour, width in ((MAP_LEVELS_PX, "white", 0.7), ((FAIR_PX,), RED, 2.0)):
-        crossed = [level for level in levels if shown.count() and shown.min() < level < shown.max()]
+        crossed = [level for level in levels if is_crossed(shown, level)]
         if crossed:
             axes.clabel(axes.contour(u, v, shown, crossed, colors=colour, linewidths=width), fmt="%g px", fontsize=7)
     draw_ring(axes, camera)
@@ -204,10 +235,13 @@ def draw_map(axes, camera, column, title, norm):
 
 def maps_page(report, camera):
     title = f"{camera.name}: expected projection uncertainty, and odd against even views"
-    figure = page(title, "Left: standard deviation in the worst direction that the corners' noise leaves in the projection. Right: how far "
-                         "calibrations of the odd and of the even views are apart. Much more than noise lets expect is blur, rolling shutter, "
-                         "or a model too simple. Red 0.1 px, dashed the farthest corner, white: no light or no model.")
-    left, right = panels(figure, bottom=0.17)[0]
+    columns = ["stdev_px"] + ([] if camera.median_difference_px is None else ["difference_px"])
+    has_red = any(is_crossed(shown_values(camera, column), FAIR_PX) for column in columns)
+    note = ("Left: standard deviation in the worst direction that the corners' noise leaves in the projection. Right: how far "
+            "calibrations of the odd and of the even views are apart. Much more than noise lets expect is blur, rolling shutter, or a "
+            f"model too simple. {'Red: 0.1 px. ' if has_red else ''}Dashed: the farthest corner. White: no light or no model.")
+    figure = image_page(title, note, camera)
+    left, right = panels(figure)[0]
     norm = LogNorm(*map_limits(report), clip=True)
     mesh = draw_map(left, camera, "stdev_px", f"uncertainty, median {camera.median_stdev_px:.2g} px", norm)
     if camera.median_difference_px is None:

@@ -15,13 +15,19 @@ class Table:
             setattr(self, column, values[:, index])
         self.size = len(values)
 
+    def by_view(self):
+        """The rows of each view, as a table."""
+        order = np.argsort(self.view, kind="stable")
+        views, starts = np.unique(self.view[order], return_index=True)
+        return {int(view): self.where(rows) for view, rows in zip(views, np.split(order, starts[1:]))}
+
     def where(self, mask):
-        """The rows that the mask selects, as a table."""
+        """The rows that a mask or a list of indices selects, as a table."""
         chosen = object.__new__(Table)
         for name, column in vars(self).items():
             if name != "size":
                 setattr(chosen, name, column[mask])
-        chosen.size = int(np.count_nonzero(mask))
+        chosen.size = len(chosen.view)
         return chosen
 
 

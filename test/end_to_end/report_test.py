@@ -129,6 +129,17 @@ class ReportThatCannotBeDrawn(unittest.TestCase):
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertRegex(finished.stdout, r"WARN.*no report")
 
+    def test_terminal_shows_for_how_long_it_is_drawn(self):
+        modules = self.recordings.path / "slow"
+        modules.mkdir()
+        (modules / "matplotlib.py").write_text("import time\ntime.sleep(3)\nraise ImportError('slow', name='matplotlib')\n")
+        words = [PROGRAMS / "calibrate_cameras", "--bag", self.bag, "--target", self.recordings.target("one"), "--topics",
+                 "/cam0/image_raw", "--models", "ds-none"]
+        finished = run_command("script", "--quiet", "--return", "--command", " ".join(map(str, words)), "/dev/null",
+                               env={**os.environ, "PYTHONPATH": str(modules)})
+        self.assertEqual(finished.returncode, 0, finished.stdout)
+        self.assertIn("Drawing the report: 2s", finished.stdout)
+
     def test_ctrl_c_while_it_is_drawn_keeps_the_result_and_leaves_nothing(self):
         scratch = self.recordings.path / "scratch"
         scratch.mkdir()
@@ -136,11 +147,14 @@ class ReportThatCannotBeDrawn(unittest.TestCase):
                  "/cam0/image_raw", "--models", "ds-none"]
         with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, text=True,
                               env={**os.environ, "TMPDIR": str(scratch)}) as process:
+            output = ""
             for line in process.stdout:
+                output += line
                 if "Generating result report" in line:
                     process.send_signal(signal.SIGINT)
             code = process.wait()
         self.assertEqual(code, 130)
+        self.assertIn("the results above are written and complete", output)
         self.assertTrue((self.recordings.path / "one-camchain.yaml").exists())
         self.assertEqual(self.reports() + list(Path(scratch).iterdir()), [])
 

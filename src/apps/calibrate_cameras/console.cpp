@@ -165,6 +165,7 @@ void Console::printFiles(const OutputFiles& files) {
 }
 
 void Console::printReport(const ReportFiles& report) {
+  bar_.clear();
   if (!report.failure.empty()) {
     printWarning("there is no report: " + report.failure);
   } else {
@@ -181,6 +182,12 @@ void Console::printReport(const ReportFiles& report) {
     std::printf("  %s: %s\n", report::gradeName(reason.grade).c_str(), reason.text.c_str());
   }
   std::fflush(stdout);
+}
+
+void Console::printWithoutReport() {
+  bar_.clear();
+  printWarning("stopped before the report was drawn; the results above are written and complete");
+  std::fflush(stdout);  // the program ends without
 }
 
 void Console::printTimes(const pipeline::CalibrationResult& result) {

@@ -20,7 +20,10 @@ class Console {
 
   void printResult(const pipeline::CalibrationResult& result);
   void printFiles(const OutputFiles& files);
+  void startDrawing() { bar_.show(0, 0); }
+  void showDrawing() { bar_.showElapsed("Drawing the report"); }
   void printReport(const ReportFiles& report);
+  void printWithoutReport();
   void printTimes(const pipeline::CalibrationResult& result);
 
  private:

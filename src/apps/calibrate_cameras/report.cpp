@@ -52,7 +52,7 @@ std::string scriptPath() {
 }  // namespace
 
 ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
-                        const std::function<bool()>& is_cancelled) {
+                        const std::function<bool()>& is_cancelled, const std::function<void()>& on_drawing) {
   ReportFiles files;
   try {
     const TemporaryFolder folder;
@@ -66,7 +66,13 @@ ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs&
     report::writeReportData(folder.path(), {inputs.dataset, result, analysis, *files.verdict, pictures});
     const std::string pdf = prefix + "-report-cam.pdf";
     const std::string html = prefix + "-report-cam.html";
-    report::drawReport(scriptPath(), folder.path(), pdf, html, is_cancelled);
+    const auto is_stopped = [&] {
+      if (on_drawing) {
+        on_drawing();
+      }
+      return is_cancelled && is_cancelled();
+    };
+    report::drawReport(scriptPath(), folder.path(), pdf, html, is_stopped);
     files.pdf = pdf;
     files.html = html;
   } catch (const std::exception& error) {  // the calibration is written; a report is not worth failing for

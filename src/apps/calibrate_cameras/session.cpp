@@ -13,11 +13,14 @@ namespace {
 
 void reportOn(const pipeline::CalibrationResult& result, const Inputs& inputs, const Arguments& arguments,
               Console& console) {
+  const UninterruptedSection leaves_nothing_behind;
   std::printf("Generating result report...\n");
   std::fflush(stdout);
-  const UninterruptedSection leaves_nothing_behind;
-  const ReportFiles files = writeReport(result, inputs, outputPrefix(arguments), isInterruptWaiting);
+  console.startDrawing();
+  const ReportFiles files =
+      writeReport(result, inputs, outputPrefix(arguments), isInterruptWaiting, [&console] { console.showDrawing(); });
   if (isInterruptWaiting()) {
+    console.printWithoutReport();
     return;
   }
   console.printReport(files);

@@ -9,6 +9,7 @@ namespace {
 constexpr std::chrono::milliseconds kRedrawInterval{100};
 constexpr std::chrono::seconds kLineInterval{2};  ///< a log needs no more
 constexpr std::size_t kLinesPerRun = 10;
+constexpr std::chrono::seconds kLongStep{2};  ///< shorter ones need no word
 
 std::string twoDigits(long value) { return (value < 10 ? "0" : "") + std::to_string(value); }
 
@@ -49,6 +50,19 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
   is_drawn_ = is_terminal_;
   drawn_at_ = Clock::now();
   drawn_done_ = done;
+}
+
+void ProgressBar::showElapsed(const char* what) {
+  constexpr std::chrono::seconds kStep{1};
+  const Clock::time_point now = Clock::now();
+  if (!is_terminal_ || now - begin_ < kLongStep || (is_drawn_ && now - drawn_at_ < kStep)) {
+    return;
+  }
+  const std::chrono::duration<double> taken = now - begin_;
+  std::printf("\r  %s: %s   ", what, durationText(taken.count()).c_str());
+  std::fflush(stdout);
+  is_drawn_ = true;
+  drawn_at_ = now;
 }
 
 void ProgressBar::clear() {

@@ -17,6 +17,10 @@ class ProgressBar {
   /// Begins anew where `done` is 0.
   void show(std::size_t done, std::size_t total);
 
+  /// On a terminal, for work whose end is not known: what is done and for how long, once that is more than 2 seconds. Begins
+  /// with show(0, 0).
+  void showElapsed(const char* what);
+
   /// Takes the bar off the terminal.
   void clear();
 
