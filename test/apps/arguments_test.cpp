@@ -179,7 +179,8 @@ TEST(Arguments, ThatAreWrongAreNamed) {
   expectUsageError(commandWith({"--min-border-distance", "-1"}), "--min-border-distance");
   expectUsageError(commandWith({"--linear-solver", "qr"}), "qr");
   expectUsageError(commandWith({"--corner-filter", "none"}), "'none'");
-  expectUsageError(commandWith({"--correction-threshold", "0"}), "--correction-threshold");
+  expectUsageError(commandWith({"--corner-filter", "quads", "--correction-threshold", "0"}),
+                   "--correction-threshold must be");
   expectUsageError(commandWith({"--init", "a.yaml", "--fix", "camera1"}), "camera1");
   expectUsageError(commandWith({"--fix", "cam1"}), "--init");
 }

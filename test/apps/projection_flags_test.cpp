@@ -56,6 +56,12 @@ TEST(ProjectionFlags, MakeACubeOfFiveFaces) {
   EXPECT_LT(larger.pinholes[4].focal_px.x(), 999.0 / 2.0);
 }
 
+TEST(ProjectionFlags, GivenSeveralTimesAddUp) {
+  const pipeline::Projections projections = parsed({"--projections", "cube", "--projections", "homography"});
+  EXPECT_EQ(projections.pinholes.size(), 5U);
+  EXPECT_TRUE(projections.rectified);
+}
+
 TEST(ProjectionFlags, NameWhatIsWrong) {
   expectUsageError({"--projections", "fisheye"}, "fisheye");
   expectUsageError({"--fovs", "90", "90"}, "--projections, which is missing");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calibrate_cameras/arguments.h"
 #include "common/program.h"
 #include "support/expect_message.h"
@@ -58,6 +60,35 @@ TEST(TartanFlags, LookInViewsAloneUnlessTheCornerPredictorIsNamed) {
   EXPECT_EQ(argumentsOf({"--projections", "pinhole", "--max-rounds", "3"}).calibrate.max_rounds, 3);
 }
 
+TEST(TartanFlags, TakeAllProjectionsThatAreGivenOneByOne) {
+  const auto options = [](const Words& words) { return argumentsOf(words).calibrate; };
+  const auto with_rounds = options({"--projections", "pinhole", "--projections", "cornerpredictor"});
+  EXPECT_EQ(with_rounds.projections.pinholes.size(), 1U);
+  EXPECT_GT(with_rounds.max_rounds, 0);
+  const Words views = {"--projections", "pinhole", "--projections=homography", "--poses", "0", "0", "--poses", "0", "0"};
+  const auto alone = options(views);
+  EXPECT_EQ(alone.projections.pinholes.size(), 1U);
+  EXPECT_TRUE(alone.projections.rectified);
+  EXPECT_EQ(alone.max_rounds, 0);
+  EXPECT_EQ(translateTartanFlags(views).notes.size(), 1U);
+}
+
+TEST(TartanFlags, SayThatRoundsAreLeftOutWhereTheyAre) {
+  const auto is_told = [](const Words& words) {
+    const Words notes = translateTartanFlags(words).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto& note) { return contains(note, "add cornerpredictor"); });
+  };
+  EXPECT_TRUE(is_told({"--projections", "cube"}));
+  EXPECT_FALSE(is_told({"--projections", "cube", "--max_rounds=3"}));
+  EXPECT_FALSE(is_told({"--projections", "cube", "--projections", "cornerpredictor"}));
+}
+
+TEST(TartanFlags, TakeProjectionsWithoutAValueAsNone) {
+  const auto options = argumentsOf({"--projections"}).calibrate;
+  EXPECT_TRUE(options.projections.empty());
+  EXPECT_EQ(options.max_rounds, 0);
+}
+
 TEST(TartanFlags, TakeTheCorrectionThresholdInSquaredPixels) {
   const auto recovery = argumentsOf({"--correction-threshold", "6.25"}).calibrate.recovery;
   EXPECT_EQ(recovery.filter, detection::CornerFilter::kQuads);
@@ -83,6 +114,18 @@ TEST(TartanFlags, LimitsOfWindowsChooseAdaptiveRefinementUnlessSymmetryIsAskedFo
   expectUsageError({"--min-resize-window-size", "small"}, "needs a number, not 'small'");
 }
 
+TEST(TartanFlags, KnowTheRefinementInEverySpelling) {
+  for (const Words& symmetry :
+       {Words{"--refinement=symmetry"}, Words{"--refinem", "symmetry"}, Words{"--refinem=symmetry"}}) {
+    Words words = symmetry;
+    words.insert(words.end(), {"--min-resize-window-size", "3"});
+    EXPECT_EQ(argumentsOf(words).calibrate.recovery.refinement, detection::Refinement::kSymmetry) << symmetry[0];
+    EXPECT_EQ(translateTartanFlags(words).notes.size(), 1U) << symmetry[0];
+  }
+  const Words last = {"--refinement", "symmetry", "--refinement=adaptive", "--min-resize-window-size", "3"};
+  EXPECT_EQ(argumentsOf(last).calibrate.recovery.adaptive_window.min_half_window_px, 3);
+}
+
 TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
   for (const Words& words : {Words{"--min-init-corners-autocomplete", "24"}, Words{"--min-tag-size-autocomplete", "0"},
                              Words{"--refine-magnitude-reject", "2.0"}, Words{"--symmetry-edge-threshold", "10"},
@@ -91,7 +134,7 @@ TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
     const TartanCommand command = translateTartanFlags(words);
     EXPECT_TRUE(command.words.empty()) << words[0];
     ASSERT_EQ(command.notes.size(), 1U) << words[0];
-    EXPECT_TRUE(contains(command.notes[0], " has no effect: ")) << command.notes[0];
+    EXPECT_TRUE(contains(command.notes[0], words[0] + " has no effect: ")) << command.notes[0];
   }
 }
 

@@ -45,7 +45,7 @@ po::options_description ownOptions() {
   add("min-border-distance", po::value<double>(), "");
   add("corner-filter", po::value<std::string>(), "");
   add("correction-threshold", po::value<double>(), "");
-  add("projections", po::value<Words>()->multitoken(), "");
+  add("projections", po::value<Words>()->multitoken()->composing(), "");
   add("fovs", columns(), "");
   add("poses", columns(), "");
   add("resolutions", columns(), "");
@@ -115,7 +115,7 @@ Words expanded(const Words& words) {
 
 /// Of a flag that is given more than once the last one counts, except for those that collect.
 void keepLast(std::vector<po::option>& options) {
-  const std::set<std::string> collecting = {"fix", "fovs", "poses", "resolutions"};
+  const std::set<std::string> collecting = {"fix", "projections", "fovs", "poses", "resolutions"};
   std::map<std::string, std::size_t> last;
   for (std::size_t i = 0; i < options.size(); ++i) {
     last[options[i].string_key] = i;

@@ -37,7 +37,8 @@ Corners
                             or quads (a quadrilateral on the predicted tag, as TartanCalib: finds fewer)
   --correction-threshold X  quads: largest distance of its corners from the tag's, in pixels (1.41)
   --projections P [P ...]   also detect in virtual views, remapped with the model: cube (five faces), homography (rectified
-                            on the predicted board), pinhole (one view for each, described by a column of the next three)
+                            on the predicted board), pinhole (one view for each, described by a column of the next three);
+                            may be repeated
   --fovs H .. --fovs V ..   degrees of each view (90 90)
   --poses X .. --poses Z .. degrees about x, then z (90 0: towards -y; 0 0: ahead)
   --resolutions H .. --resolutions W ..

@@ -18,9 +18,9 @@ struct TartanCommand {
 };
 
 /// Understands TartanCalib's flags, and all of calibrate_cameras, which are handed on as they are. As there, `_` may stand
-/// for
-/// `-` and a flag may be cut short while it stays unambiguous. Throws UsageError that names the flag.
-TartanCommand translateTartanFlags(const std::vector<std::string>& words);
+/// for `-`, a flag may be cut short while it stays unambiguous, and a file of `--rig` stands for the flags in it. Throws
+/// UsageError that names the flag.
+TartanCommand translateTartanFlags(const std::vector<std::string>& command_line);
 
 /// Text of --help.
 std::string tartanHelpText();
