@@ -125,7 +125,11 @@ void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target:
   }
   yaml.add("approx_sync_s", yamlFloat(static_cast<double>(options.approx_sync_ns) * kSecondsPerNanosecond));
   yaml.add("max_rounds", std::to_string(options.max_rounds));
-  yaml.add("corner_filter", options.recovery.filter == detection::CornerFilter::kQuads ? "quads" : "image");
+  const bool is_by_quads = options.recovery.filter == detection::CornerFilter::kQuads;
+  yaml.add("corner_filter", is_by_quads ? "quads" : "image");
+  if (is_by_quads) {
+    yaml.add("max_quad_distance_px", yamlFloat(options.recovery.max_quad_distance_px));
+  }
   addProjections(yaml, options.projections);
   yaml.open("detector");
   yaml.add("min_border_distance_px", yamlFloat(options.detector.min_border_distance_px));

@@ -65,6 +65,13 @@ TEST(Arguments, NameWhatIsWrongWithARefinement) {
   expectUsageError(commandWith({"--refinement", "adaptive", "--min-resize-window-size", "9"}), "the first the smaller");
 }
 
+TEST(Arguments, TakeTheThresholdOfQuadsWithThemOnly) {
+  const auto recovery = parsedWith({"--corner-filter", "quads", "--correction-threshold", "3.18"}).calibrate.recovery;
+  EXPECT_DOUBLE_EQ(recovery.max_quad_distance_px, 3.18);
+  expectUsageError(commandWith({"--correction-threshold", "3.18"}), "--correction-threshold needs --corner-filter quads");
+  expectUsageError(commandWith({"--corner-filter", "image", "--correction-threshold", "3"}), "needs --corner-filter quads");
+}
+
 TEST(Arguments, SetEveryOption) {
   const Arguments arguments = parsedWith({"--bag-from-to",
                                           "2.5",

@@ -89,6 +89,13 @@ TEST(TartanFlags, TakeProjectionsWithoutAValueAsNone) {
   EXPECT_EQ(options.max_rounds, 0);
 }
 
+TEST(TartanFlags, LetAnExplicitFilterWinOverTheThresholdThatImpliesOne) {
+  const Words words = {"--correction_threshold", "10.1", "--corner-filt=image"};
+  EXPECT_EQ(argumentsOf(words).calibrate.recovery.filter, detection::CornerFilter::kImage);
+  EXPECT_EQ(translateTartanFlags(words).notes,
+            Words{"--correction_threshold has no effect: --corner-filter image looks for no quadrilaterals"});
+}
+
 TEST(TartanFlags, TakeTheCorrectionThresholdInSquaredPixels) {
   const auto recovery = argumentsOf({"--correction-threshold", "6.25"}).calibrate.recovery;
   EXPECT_EQ(recovery.filter, detection::CornerFilter::kQuads);

@@ -51,6 +51,14 @@ TEST(CalibrationYaml, HoldsTheRunAndItsOptions) {
   EXPECT_EQ(yaml["target"]["tagSize"].as<double>(), 0.088);
 }
 
+TEST(CalibrationYaml, HoldsTheThresholdOfTheFilterThatHasOne) {
+  pipeline::CalibrateOptions options;
+  EXPECT_FALSE(parsed(exampleResult(), options)["options"]["max_quad_distance_px"].IsDefined());
+  options.recovery.filter = detection::CornerFilter::kQuads;
+  options.recovery.max_quad_distance_px = 3.18;
+  EXPECT_DOUBLE_EQ(parsed(exampleResult(), options)["options"]["max_quad_distance_px"].as<double>(), 3.18);
+}
+
 TEST(CalibrationYaml, HoldsTheVirtualViews) {
   const YAML::Node options = parsed(exampleResult())["options"];
   EXPECT_EQ(options["rectified_view"].as<std::vector<int>>(), (std::vector<int>{800, 600}));

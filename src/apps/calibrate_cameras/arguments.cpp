@@ -34,6 +34,9 @@ void applyCornerFilter(const Flags& flags, detection::RecoveryOptions& recovery)
     throw UsageError("--corner-filter is image or quads, not '" + name + "'");
   }
   recovery.filter = name == "quads" ? detection::CornerFilter::kQuads : detection::CornerFilter::kImage;
+  if (flags.has("correction-threshold") && name != "quads") {
+    throw UsageError("--correction-threshold needs --corner-filter quads");
+  }
   recovery.max_quad_distance_px = flags.get("correction-threshold", recovery.max_quad_distance_px);
   if (!(recovery.max_quad_distance_px > 0.0)) {
     throw UsageError("--correction-threshold must be a positive number of pixels");

@@ -204,7 +204,7 @@ void chooseRefinement(const Flags& flags, const std::vector<Given>& all, TartanC
 }
 
 /// A threshold asks for the filter by quadrilaterals. TartanCalib compares it with squared distances.
-void chooseFilter(const std::vector<Given>& all, TartanCommand& command) {
+void chooseFilter(const Flags& flags, const std::vector<Given>& all, TartanCommand& command) {
   const auto given = std::find_if(all.rbegin(), all.rend(), [](const Given& each) { return each.flag->name == kThreshold; });
   if (given == all.rend()) {
     return;
@@ -212,6 +212,10 @@ void chooseFilter(const std::vector<Given>& all, TartanCommand& command) {
   const double threshold_px2 = number(*given);
   if (threshold_px2 <= 0.0) {
     throw UsageError(given->word + " must be above 0: TartanCalib compares it with squared pixels");
+  }
+  if (flags.get<std::string>("corner-filter") == "image") {
+    command.notes.push_back(given->word + " has no effect: --corner-filter image looks for no quadrilaterals");
+    return;
   }
   const std::string threshold_px = std::to_string(std::sqrt(threshold_px2));
   command.words.insert(command.words.end(), {"--corner-filter", "quads", "--correction-threshold", threshold_px});
@@ -225,7 +229,7 @@ void decide(const std::vector<Given>& all, TartanCommand& command) {
   command.help = flags.has("help");
   chooseRounds(flags, command);
   chooseRefinement(flags, all, command);
-  chooseFilter(all, command);
+  chooseFilter(flags, all, command);
   if (contains(flags.get<Words>("projections"), "pinhole") && !flags.has("poses")) {
     command.notes.emplace_back(
         "without --poses the view of --projections pinhole looks along the camera's -y axis, as in TartanCalib; ahead is "
