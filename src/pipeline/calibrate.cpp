@@ -71,6 +71,9 @@ CalibrationResult calibrateCorners(const std::vector<CameraCorners>& cameras, co
     run.addCamera(cameras[i], std::nullopt);
   }
   run.solveTogether();
+  if (listener.detection_solved) {
+    listener.detection_solved(run.current());
+  }
   return run.finish();
 }
 

@@ -72,6 +72,16 @@ TEST(Arguments, TakeTheThresholdOfQuadsWithThemOnly) {
   expectUsageError(commandWith({"--corner-filter", "image", "--correction-threshold", "3"}), "needs --corner-filter quads");
 }
 
+TEST(Arguments, ThatNeedImagesAreNamedWhereThereAreCorners) {
+  const Words of_images = {"--max-rounds", "3", "--projections", "cube", "--corner-filter", "quads"};
+  EXPECT_TRUE(parsedWith(of_images).notes.empty());
+  Words words = of_images;
+  words.insert(words.end(), {"--corners", "c.csv"});
+  EXPECT_EQ(parsedWith(words).notes,
+            (Words{"--max-rounds, --corner-filter, --projections have no effect: --corners brings no images"}));
+  EXPECT_TRUE(parsedWith({"--corners", "c.csv", "--min-tags", "3"}).notes.empty());
+}
+
 TEST(Arguments, SetEveryOption) {
   const Arguments arguments = parsedWith({"--bag-from-to",
                                           "2.5",

@@ -145,6 +145,17 @@ TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
   }
 }
 
+TEST(TartanFlags, OfPicturesOfImagesHaveNoEffectWhereThereAreCorners) {
+  const Words modes = {"--debug-modes", "originalprojection", "reprojectionpoints", "individualprojections"};
+  EXPECT_EQ(translateTartanFlags(modes).debug_modes.size(), 3U);
+  Words words = modes;
+  words.emplace_back("--corners=c.csv");
+  const TartanCommand command = translateTartanFlags(words);
+  EXPECT_EQ(command.debug_modes, Words{"reprojectionpoints"});
+  EXPECT_EQ(command.notes,
+            Words{"--debug-modes originalprojection individualprojections has no effect: --corners brings no images"});
+}
+
 TEST(TartanFlags, TellThatTheDefaultViewLooksSideways) {
   const auto is_told = [](const Words& words) {
     const TartanCommand command = translateTartanFlags(words);

@@ -162,12 +162,15 @@ TEST(CalibrateCorners, ListenersHearStagesStartsAndWarningsInOrder) {
   listener.rig_started = [&heard](const calibration::Problem& problem) {
     heard.push_back("rig of " + std::to_string(problem.rig.cameras.size()));
   };
+  listener.detection_solved = [&heard](const CalibrationResult& result) {
+    heard.push_back("solved " + std::to_string(result.cameras.size()));
+  };
   std::vector<std::string> warnings;
   listener.warning = [&warnings](const std::string& warning) { warnings.push_back(warning); };
   const CalibrationResult result =
       calibrateCorners(cornersOf(stereoRig(), 6), target::AprilGrid(), optionsFor(kStereoModels), listener);
   EXPECT_EQ(heard, (std::vector<std::string>{"detected 0", "start camera", "started 0", "detected 1", "start camera",
-                                             "started 1", "start rig", "rig of 2", "solve", "statistics"}));
+                                             "started 1", "start rig", "rig of 2", "solve", "solved 2", "statistics"}));
   EXPECT_FALSE(warnings.empty());
   EXPECT_EQ(warnings, result.warnings);
   EXPECT_EQ(result.times.size(), 5U);

@@ -1,5 +1,6 @@
 #include "calibrate_cameras/arguments.h"
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -9,6 +10,7 @@
 #include "calibrate_cameras/rig_file.h"
 #include "common/program.h"
 #include "common/recording.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -117,6 +119,34 @@ pipeline::CalibrateOptions calibrateFrom(const Flags& flags) {
   return options;
 }
 
+/// Names flags that say what to do with images where there are none.
+void noteFlagsOfImages(const Flags& flags, Words& notes) {
+  constexpr std::array kFlagsOfImages = {"bag-from-to",
+                                         "bag-freq",
+                                         "max-rounds",
+                                         "min-border-distance",
+                                         "corner-filter",
+                                         "correction-threshold",
+                                         "projections",
+                                         "fovs",
+                                         "poses",
+                                         "resolutions",
+                                         "refinement",
+                                         "symmetry-window",
+                                         "window-scale",
+                                         "min-resize-window-size",
+                                         "max-resize-window-size"};
+  Words unused;
+  for (const std::string flag : kFlagsOfImages) {
+    if (flags.has(flag)) {
+      unused.push_back("--" + flag);
+    }
+  }
+  if (!unused.empty()) {
+    notes.push_back(joined(unused) + (unused.size() == 1 ? " has" : " have") + " no effect: --corners brings no images");
+  }
+}
+
 void checkComplete(const Arguments& arguments, const Flags& flags) {
   const bool has_corners = !arguments.corners_file.empty();
   const bool has_init = !arguments.init_file.empty();
@@ -159,6 +189,9 @@ Arguments parseArguments(const std::vector<std::string>& words) {
   arguments.report = !flags.has("no-report");
   arguments.show_report = !flags.has("dont-show-report");
   checkComplete(arguments, flags);
+  if (!arguments.corners_file.empty()) {
+    noteFlagsOfImages(flags, arguments.notes);
+  }
   return arguments;
 }
 

@@ -27,6 +27,8 @@ struct Arguments {
   bool export_corners = false;
   bool report = true;
   bool show_report = true;
+
+  std::vector<std::string> notes;  ///< about flags that have no effect beside the others
 };
 
 /// Parses the words after the program's name as parseFlags does; `--rig F` stands for the flags in F. Throws UsageError that

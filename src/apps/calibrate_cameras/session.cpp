@@ -40,6 +40,9 @@ std::string commandText(const std::string& program, const std::vector<std::strin
 }
 
 void runSession(const Arguments& arguments, const std::string& command, const SessionHooks& hooks) {
+  for (const std::string& note : arguments.notes) {
+    printWarning(note);
+  }
   checkWritable(outputPrefix(arguments));
   const Inputs inputs = openInputs(arguments, printWarning);
   Console console(inputs);

@@ -276,8 +276,8 @@ class CameraPictures {
 
 void writeDebugPictures(const Inputs& inputs, const pipeline::CalibrationResult& result,
                         const std::vector<std::string>& modes, const std::string& folder) {
-  for (std::size_t i = 0; i < inputs.streams.size(); ++i) {
-    const fs::path own = inputs.streams.size() > 1 ? fs::path(folder) / cameraName(i) : fs::path(folder);
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    const fs::path own = result.cameras.size() > 1 ? fs::path(folder) / cameraName(i) : fs::path(folder);
     CameraPictures(inputs, result, i, own).write(modes);
   }
 }

@@ -171,7 +171,7 @@ const TartanFlag* findFlag(const std::string& word) {
 /// TartanCalib looks for corners at their predictions only where it is told to.
 void chooseRounds(const Flags& flags, TartanCommand& command) {
   const auto projections = flags.get<Words>("projections");
-  if (projections.empty() || contains(projections, "cornerpredictor") || flags.has("max-rounds")) {
+  if (projections.empty() || contains(projections, "cornerpredictor") || flags.has("max-rounds") || flags.has("corners")) {
     return;
   }
   command.words.insert(command.words.end(), {"--max-rounds", "0"});
@@ -223,6 +223,22 @@ void chooseFilter(const Flags& flags, const std::vector<Given>& all, TartanComma
                           " px; without it they are tested in the image, which finds more");
 }
 
+/// Pictures of images need images.
+void chooseModes(const Flags& flags, TartanCommand& command) {
+  if (!flags.has("corners")) {
+    return;
+  }
+  Words& modes = command.debug_modes;
+  const auto unused = std::stable_partition(modes.begin(), modes.end(), [](const std::string& mode) {
+    return mode == "reprojectionpoints" || mode == "targetpointcloud" || mode == "pointcloudprojection";
+  });
+  if (unused != modes.end()) {
+    command.notes.push_back("--debug-modes " + joined(Words(unused, modes.end()), " ") +
+                            " has no effect: --corners brings no images");
+    modes.erase(unused, modes.end());
+  }
+}
+
 /// What TartanCalib's flags mean beside the others, in whatever order and spelling they are.
 void decide(const std::vector<Given>& all, TartanCommand& command) {
   const Flags flags = parseFlags(command.words);
@@ -230,6 +246,7 @@ void decide(const std::vector<Given>& all, TartanCommand& command) {
   chooseRounds(flags, command);
   chooseRefinement(flags, all, command);
   chooseFilter(flags, all, command);
+  chooseModes(flags, command);
   if (contains(flags.get<Words>("projections"), "pinhole") && !flags.has("poses")) {
     command.notes.emplace_back(
         "without --poses the view of --projections pinhole looks along the camera's -y axis, as in TartanCalib; ahead is "
