@@ -74,11 +74,15 @@ int run(const std::vector<std::string>& words) {
   for (const std::string& note : command.notes) {
     apps::printWarning(note);
   }
+  const fs::path prefix = fs::path(command.save_dir) / (command.log_dest + "1");
   makeFolder("save_dir", command.save_dir);
+  if (fs::path(command.log_dest).has_parent_path()) {
+    makeFolder("log_dest", prefix.parent_path().string());
+  }
   if (!command.debug_modes.empty() && !command.debug_image_dir.empty()) {
     makeFolder("debug_image_dir", command.debug_image_dir);
   }
-  arguments.output_prefix = (fs::path(command.save_dir) / (command.log_dest + "1")).string();
+  arguments.output_prefix = prefix.string();
   apps::runSession(arguments, apps::commandText("tartan_calibrate", words), hooksFor(command));
   return apps::kSuccess;
 }

@@ -82,6 +82,20 @@ TEST(Arguments, ThatNeedImagesAreNamedWhereThereAreCorners) {
   EXPECT_TRUE(parsedWith({"--corners", "c.csv", "--min-tags", "3"}).notes.empty());
 }
 
+TEST(Arguments, ThatDescribeNoViewAreNamed) {
+  const Words rows = {"--fovs",  "90", "--fovs",        "90",  "--poses",       "0",
+                      "--poses", "0",  "--resolutions", "500", "--resolutions", "500"};
+  const auto notes = [&rows](const std::string& projection) {
+    Words words = {"--projections", projection};
+    words.insert(words.end(), rows.begin(), rows.end());
+    return parsedWith(words).notes;
+  };
+  EXPECT_TRUE(notes("pinhole").empty());
+  EXPECT_EQ(notes("cube"), Words{"--poses has no effect: it describes views of --projections pinhole"});
+  EXPECT_EQ(notes("homography").size(), 2U);
+  EXPECT_EQ(notes("cornerpredictor").size(), 3U);
+}
+
 TEST(Arguments, SetEveryOption) {
   const Arguments arguments = parsedWith({"--bag-from-to",
                                           "2.5",

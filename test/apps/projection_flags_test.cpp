@@ -62,6 +62,20 @@ TEST(ProjectionFlags, GivenSeveralTimesAddUp) {
   EXPECT_TRUE(projections.rectified);
 }
 
+TEST(ProjectionFlags, NeedTwoRowsOfOneLength) {
+  const Words two = {"--projections", "pinhole", "pinhole"};
+  const auto with = [&two](const Words& rows) {
+    Words words = two;
+    words.insert(words.end(), rows.begin(), rows.end());
+    return words;
+  };
+  EXPECT_EQ(parsed(with({"--poses", "0", "90", "--poses", "90", "0"})).pinholes.size(), 2U);
+  EXPECT_EQ(parsed(with({"--poses", "0", "90", "90", "0"})).pinholes.size(), 2U);
+  expectUsageError(with({"--poses", "0", "--poses", "90", "0", "0"}), "its rows have 1, 3 values");
+  expectUsageError(with({"--fovs", "90", "--fovs", "90", "--fovs", "90", "--fovs", "90"}),
+                   "its rows have 1, 1, 1, 1 values");
+}
+
 TEST(ProjectionFlags, NameWhatIsWrong) {
   expectUsageError({"--projections", "fisheye"}, "fisheye");
   expectUsageError({"--fovs", "90", "90"}, "--projections, which is missing");

@@ -119,6 +119,7 @@ TEST(TartanFlags, LimitsOfWindowsChooseAdaptiveRefinementUnlessSymmetryIsAskedFo
     EXPECT_EQ(translateTartanFlags(both).notes.size(), 2U);
   }
   expectUsageError({"--min-resize-window-size", "small"}, "needs a number, not 'small'");
+  expectUsageError({"--min-resize-window-size", "2.7"}, "needs whole pixels, not '2.7'");
 }
 
 TEST(TartanFlags, KnowTheRefinementInEverySpelling) {
@@ -143,6 +144,8 @@ TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
     ASSERT_EQ(command.notes.size(), 1U) << words[0];
     EXPECT_TRUE(contains(command.notes[0], words[0] + " has no effect: ")) << command.notes[0];
   }
+  EXPECT_EQ(translateTartanFlags({"--outputMatlab"}).notes,
+            Words{"--outputMatlab has no effect: no files of MATLAB's are written; --export-corners writes the corners"});
 }
 
 TEST(TartanFlags, OfPicturesOfImagesHaveNoEffectWhereThereAreCorners) {

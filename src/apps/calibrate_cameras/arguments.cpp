@@ -189,7 +189,9 @@ Arguments parseArguments(const std::vector<std::string>& words) {
   arguments.report = !flags.has("no-report");
   arguments.show_report = !flags.has("dont-show-report");
   checkComplete(arguments, flags);
-  if (!arguments.corners_file.empty()) {
+  if (arguments.corners_file.empty()) {
+    arguments.notes = notesOnProjections(flags);
+  } else {
     noteFlagsOfImages(flags, arguments.notes);
   }
   return arguments;

@@ -129,6 +129,23 @@ void keepLast(std::vector<po::option>& options) {
   options = kept;
 }
 
+/// The two rows of a table; where one holds more values than the other, they would be taken for those of other columns.
+void checkRows(const std::string& flag, const std::vector<po::option>& options) {
+  std::vector<std::size_t> lengths;
+  Words texts;
+  for (const po::option& option : options) {
+    if (option.string_key == flag) {
+      lengths.push_back(option.value.size());
+      texts.push_back(std::to_string(option.value.size()));
+    }
+  }
+  const bool are_two = lengths.size() == 2 && lengths.front() == lengths.back();
+  if (lengths.size() > 1 && !are_two) {
+    throw UsageError("--" + flag + " takes two rows with one value for each of the --projections; its rows have " +
+                     joined(texts) + " values");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> kalibrFlags() { return names(kalibrOptions()); }
@@ -147,6 +164,9 @@ Flags parseFlags(const std::vector<std::string>& words) {
       if (option.string_key.empty()) {
         throw UsageError("unexpected word '" + option.original_tokens.front() + "'; see --help");
       }
+    }
+    for (const char* flag : {"fovs", "poses", "resolutions"}) {
+      checkRows(flag, parsed.options);
     }
     keepLast(parsed.options);
     po::store(parsed, values);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/program.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -83,6 +84,26 @@ pipeline::Projections projectionsFrom(const Flags& flags) {
     }
   }
   return projections;
+}
+
+std::vector<std::string> notesOnProjections(const Flags& flags) {
+  struct ViewFlag {
+    const char* name;
+    std::vector<std::string> owners;
+  };
+  const std::vector<ViewFlag> view_flags = {
+      {"fovs", {"pinhole", "cube"}}, {"poses", {"pinhole"}}, {"resolutions", {"pinhole", "cube", "homography"}}};
+  const auto names = flags.get<std::vector<std::string>>("projections");
+  std::vector<std::string> notes;
+  for (const ViewFlag& flag : view_flags) {
+    const bool is_owned =
+        std::find_first_of(names.begin(), names.end(), flag.owners.begin(), flag.owners.end()) != names.end();
+    if (flags.has(flag.name) && !is_owned) {
+      notes.push_back("--" + std::string(flag.name) + " has no effect: it describes views of --projections " +
+                      joined(flag.owners));
+    }
+  }
+  return notes;
 }
 
 }  // namespace tartan_calib::apps

@@ -53,6 +53,12 @@ double number(const Given& given) {
   return result;
 }
 
+void wholePixels(const Given& given) {
+  if (std::floor(number(given)) != number(given)) {
+    throw UsageError(given.word + " needs whole pixels, not '" + given.values.front() + "'");
+  }
+}
+
 std::string text(const Given& given) {
   if (given.values.empty()) {
     throw UsageError(given.word + " needs a value; see --help");
@@ -96,7 +102,8 @@ void applyDebugModes(const Given& given, TartanCommand& command) {
 
 /// Every flag that TartanCalib has and calibrate_cameras has not, or not with this meaning.
 const std::vector<TartanFlag>& tartanFlags() {
-  const auto decided_later = [](const Given& given, TartanCommand& /*command*/) { number(given); };
+  const auto check_number = [](const Given& given, TartanCommand& /*command*/) { number(given); };
+  const auto check_pixels = [](const Given& given, TartanCommand& /*command*/) { wholePixels(given); };
   const std::string every_view = "every view takes part, weighted by the uncertainty of its corners";
   static const std::vector<TartanFlag> flags = {
       {"projections", kAnyNumber, applyProjections},
@@ -108,9 +115,9 @@ const std::vector<TartanFlag>& tartanFlags() {
                     "images with few corners or none are gone through as well"),
       withoutEffect("min-tag-size-autocomplete", Value::kNumber,
                     "corners are looked for where the nearest other one is at least 4 px away"),
-      {kThreshold, 1, decided_later},
-      {kMinWindow, 1, decided_later},
-      {kMaxWindow, 1, decided_later},
+      {kThreshold, 1, check_number},
+      {kMinWindow, 1, check_pixels},
+      {kMaxWindow, 1, check_pixels},
       {"symmetry-refinement", 0,
        [](const Given& /*given*/, TartanCommand& command) {
          command.words.insert(command.words.end(), {"--refinement", "symmetry"});
@@ -121,7 +128,7 @@ const std::vector<TartanFlag>& tartanFlags() {
                     "corners are refined up to where their window leaves the image"),
       withoutEffect("export-dataset-dir", Value::kText,
                     "its format is read by TartanCalib's own libvis only; --export-corners writes the corners"),
-      withoutEffect("outputMatlab", Value::kNone, "--export-corners writes the corners"),
+      withoutEffect("outputMatlab", Value::kNone, "no files of MATLAB's are written; --export-corners writes the corners"),
       withoutEffect("polar-setting", Value::kNumber, every_view),
       withoutEffect("polar-cutoff", Value::kNumber, every_view),
       withoutEffect("force-all", Value::kNone, every_view),
