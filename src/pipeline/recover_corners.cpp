@@ -71,8 +71,8 @@ class ImageRecovery {
   RecoveredImage recover(const StampedImage& image) const {
     RecoveredImage result{{camera_index_, image.stamp_ns, earlierIn(image.stamp_ns)}, {}};
     CameraView& view = result.view;
-    const auto T_cam_target = poseOf(image.stamp_ns, view.corners);
-    if (T_cam_target ? !needsSearch(image.stamp_ns, *T_cam_target) : search_.views.empty()) {
+    const auto map = predict(image.stamp_ns, view.corners);
+    if (map ? !needsSearch(image.stamp_ns, *map) : search_.views.empty()) {
       return result;
     }
     try {
@@ -83,17 +83,17 @@ class ImageRecovery {
       // Counted when the images were read for the first time.
       view.corners.clear();
     }
-    if (T_cam_target) {
-      const int num_predicted = countPredicted(camera_, *T_cam_target, start_.target_points);
-      result.searched = {camera_, *T_cam_target, static_cast<int>(view.corners.size()) >= num_predicted};
+    if (map) {
+      const int num_predicted = countPredicted(camera_, *map, start_.target_points);
+      result.searched = {*map, static_cast<int>(view.corners.size()) >= num_predicted};
     }
     return result;
   }
 
  private:
-  bool needsSearch(std::int64_t stamp_ns, const geometry::Rigid3& T_cam_target) const {
+  bool needsSearch(std::int64_t stamp_ns, const detection::BoardMap& map) const {
     const auto before = search_.history.find(stamp_ns);
-    return before == search_.history.end() || hasMoved(before->second, camera_, T_cam_target, start_.target_points);
+    return before == search_.history.end() || hasMoved(before->second, camera_, map, start_.target_points);
   }
 
   void rememberUsed(const CameraView& image) {
@@ -121,6 +121,11 @@ class ImageRecovery {
       T_cam_target = calibration::estimatePose(camera_, start_.target_points, corners);
     }
     return T_cam_target ? T_cam_target : start_.poses.guessed(camera_index_, stamp_ns);
+  }
+
+  std::optional<detection::BoardMap> predict(std::int64_t stamp_ns, const std::vector<Corner>& corners) const {
+    const auto T_cam_target = poseOf(stamp_ns, corners);
+    return T_cam_target ? std::make_optional(boardMap(camera_, *T_cam_target, start_.shape)) : std::nullopt;
   }
 
   std::vector<Corner> recoverFrom(const cv::Mat& gray, const CameraView& earlier) const {
