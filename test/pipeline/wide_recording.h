@@ -45,6 +45,12 @@ inline std::vector<StampedImage> wideImages() {
   return images;
 }
 
+/// Where the corners of an image really are, by increasing id.
+inline std::vector<simulation::TrueCorner> wideTruth(std::size_t i) {
+  const target::AprilGrid grid;
+  return simulation::projectCorners(grid, wideCamera(), test_support::poseOf(grid, widePose(i)));
+}
+
 /// The recording, rendered once.
 inline CameraStream wideStream() {
   static const std::vector<StampedImage> images = wideImages();
