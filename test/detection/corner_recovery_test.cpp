@@ -6,6 +6,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "recovery_score.h"
 #include "support/board_scene.h"
 #include "tartan_calib/error.h"
 
@@ -16,42 +17,6 @@ using test_support::BoardPose;
 using test_support::BoardScene;
 using test_support::kDegree;
 
-BoardMap boardMap(const camera::Camera& camera, const geometry::Rigid3& T_cam_target) {
-  return [camera, T_cam_target](const Eigen::Vector2d& p_m) {
-    return camera::project(camera.model, T_cam_target * Eigen::Vector3d(p_m.x(), p_m.y(), 0.0));
-  };
-}
-
-/// How recovered corners compare with the truth.
-struct Score {
-  int expected = 0;  ///< inside the image by the border and at least 4 px from the next corner
-  int found = 0;     ///< of those, within 0.5 px
-  int wrong = 0;     ///< reported and further away
-  double median_px = 0.0;
-};
-
-Score score(const std::vector<observation::Corner>& corners, const std::vector<simulation::TrueCorner>& truth) {
-  std::map<int, Eigen::Vector2d> true_px;
-  Score result;
-  for (const simulation::TrueCorner& corner : truth) {
-    true_px[corner.corner_id] = corner.px;
-    result.expected += corner.visible && corner.neighbour_distance_px >= 4.0 ? 1 : 0;
-  }
-  std::vector<double> errors_px;
-  for (const observation::Corner& corner : corners) {
-    const auto match = true_px.find(corner.corner_id);
-    const double error_px = match == true_px.end() ? 1e9 : (match->second - corner.px).norm();
-    ++(error_px < 0.5 ? result.found : result.wrong);
-    errors_px.push_back(error_px);
-  }
-  if (!errors_px.empty()) {
-    const auto middle = errors_px.begin() + static_cast<std::ptrdiff_t>(errors_px.size() / 2);
-    std::nth_element(errors_px.begin(), middle, errors_px.end());
-    result.median_px = *middle;
-  }
-  return result;
-}
-
 /// A 200-degree fisheye with the board far from the axis: its image reaches the rim.
 const BoardPose kAtTheRim{0.55, 75.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree};
 
@@ -61,8 +26,8 @@ TEST(CornerRecoveryTest, FindsTheCornersThatAPosedModelPredicts) {
   const target::AprilGrid grid;
   BoardScene scene(fisheye());
   const auto truth = scene.add(grid, kAtTheRim);
-  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
-  const Score result = score(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map), truth);
+  const BoardMap map = flatBoardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  const RecoveryScore result = recoveryScore(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map), truth);
   EXPECT_GE(result.found, 0.98 * result.expected) << "of " << result.expected;
   EXPECT_GT(result.expected, 100);
   EXPECT_EQ(result.wrong, 0);
@@ -73,13 +38,13 @@ TEST(CornerRecoveryTest, ToleratesPredictionsThatAreSeveralPixelsOff) {
   const target::AprilGrid grid;
   BoardScene scene(fisheye());
   const auto truth = scene.add(grid, kAtTheRim);
-  const BoardMap exact = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  const BoardMap exact = flatBoardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
   // An error that grows over the image, as that of a model that extrapolates.
   const BoardMap map = [&exact](const Eigen::Vector2d& p_m) -> std::optional<Eigen::Vector2d> {
     const auto px = exact(p_m);
     return px ? std::optional<Eigen::Vector2d>(*px + Eigen::Vector2d(1.5 + 2.0 * p_m.x(), -1.0 - 2.5 * p_m.y())) : px;
   };
-  const Score result = score(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map), truth);
+  const RecoveryScore result = recoveryScore(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map), truth);
   EXPECT_GE(result.found, 0.95 * result.expected) << "of " << result.expected;
   EXPECT_EQ(result.wrong, 0);
 }
@@ -89,8 +54,8 @@ TEST(CornerRecoveryTest, ReportsNoCoveredCorner) {
   BoardScene scene(fisheye());
   const auto truth = scene.add(grid, {0.5, 30.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree});
   const BoardMap map =
-      boardMap(scene.camera(),
-               test_support::poseOf(grid, {0.5, 30.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree}));
+      flatBoardMap(scene.camera(),
+                   test_support::poseOf(grid, {0.5, 30.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree}));
   const Eigen::Vector2d middle_px = truth[truth.size() / 2].px;
   constexpr int kRadius_px = 60;
   cv::circle(scene.grey(), cv::Point(static_cast<int>(middle_px.x()), static_cast<int>(middle_px.y())), kRadius_px, 150.0F,
@@ -101,7 +66,7 @@ TEST(CornerRecoveryTest, ReportsNoCoveredCorner) {
     covered += (corner.px - middle_px).norm() < kRadius_px ? 1 : 0;
   }
   EXPECT_EQ(covered, 0);
-  const Score result = score(corners, truth);
+  const RecoveryScore result = recoveryScore(corners, truth);
   EXPECT_EQ(result.wrong, 0);
   int clear = 0;
   for (const simulation::TrueCorner& corner : truth) {
@@ -114,7 +79,7 @@ TEST(CornerRecoveryTest, ReportsNoCoveredCorner) {
 TEST(CornerRecoveryTest, ReportsNoCornerJustBehindTheEdgeOfAHandFromAnySide) {
   const target::AprilGrid grid;
   const BoardPose pose{0.5, 30.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree};
-  const BoardMap map = boardMap(fisheye(), test_support::poseOf(grid, pose));
+  const BoardMap map = flatBoardMap(fisheye(), test_support::poseOf(grid, pose));
   constexpr double kRadius_px = 40.0;
   constexpr double kDepth_px = 2.0;
   constexpr double kClear_px = 6.0;
@@ -133,7 +98,7 @@ TEST(CornerRecoveryTest, ReportsNoCornerJustBehindTheEdgeOfAHandFromAnySide) {
     cv::circle(scene.grey(), cv::Point(static_cast<int>(std::lround(fixed.x())), static_cast<int>(std::lround(fixed.y()))),
                static_cast<int>(kRadius_px) << kShift, 110.0F, cv::FILLED, cv::LINE_8, kShift);
     const auto corners = CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map);
-    const Score result = score(corners, truth);
+    const RecoveryScore result = recoveryScore(corners, truth);
     EXPECT_EQ(result.wrong, 0);
     found += result.found;
     for (const observation::Corner& corner : corners) {
@@ -176,14 +141,14 @@ TEST(CornerRecoveryTest, FindsCornersWhoseSurroundingsLeaveTheImage) {
     const BoardPose pose{0.35 + 0.02 * k, 38.0 * kDegree, 1.0 * k, 0.2, -0.1, 0.3 * k};
     const auto truth = scene.add(grid, pose);
     const auto corners =
-        CornerRecovery(grid).recover(scene.expose(0.7, 2.0), boardMap(scene.camera(), test_support::poseOf(grid, pose)));
+        CornerRecovery(grid).recover(scene.expose(0.7, 2.0), flatBoardMap(scene.camera(), test_support::poseOf(grid, pose)));
     const auto close = countClose(corners, truth, [&](const Eigen::Vector2d& px) {
       const double border_px = std::min({px.x(), px.y(), 639.0 - px.x(), 479.0 - px.y()});
       return border_px > kNeeded_px && border_px < kWindow_px;
     });
     count.first += close.first;
     count.second += close.second;
-    EXPECT_EQ(score(corners, truth).wrong, 0);
+    EXPECT_EQ(recoveryScore(corners, truth).wrong, 0);
   }
   EXPECT_GT(count.first, 20);
   EXPECT_GE(count.second, 0.95 * count.first) << "of " << count.first;
@@ -206,7 +171,7 @@ TEST(CornerRecoveryTest, FindsCornersBesideTheLensCircle) {
     cv::circle(outside, cv::Point(500, 500), static_cast<int>(kCircle_px), 0.0F, cv::FILLED);
     scene.grey().setTo(0.0, outside > 0.5F);
     const auto corners =
-        CornerRecovery(grid).recover(scene.expose(0.7, 2.0), boardMap(scene.camera(), test_support::poseOf(grid, pose)));
+        CornerRecovery(grid).recover(scene.expose(0.7, 2.0), flatBoardMap(scene.camera(), test_support::poseOf(grid, pose)));
     const auto rim_px = [&](const Eigen::Vector2d& px) { return kCircle_px - (px - centre_px).norm(); };
     const auto close = countClose(
         corners, truth, [&](const Eigen::Vector2d& px) { return rim_px(px) > kNeeded_px && rim_px(px) < kWindow_px; });
@@ -227,12 +192,12 @@ TEST(CornerRecoveryTest, ABoardElsewhereGivesNothing) {
   BoardPose other = kAtTheRim;
   other.azimuth_rad += 90.0 * kDegree;
   EXPECT_TRUE(CornerRecovery(grid)
-                  .recover(scene.expose(0.7, 2.0), boardMap(scene.camera(), test_support::poseOf(grid, other)))
+                  .recover(scene.expose(0.7, 2.0), flatBoardMap(scene.camera(), test_support::poseOf(grid, other)))
                   .empty());
   other = kAtTheRim;
   other.roll_rad += 90.0 * kDegree;  // the same place, turned: every X-corner is there, with another id
   EXPECT_TRUE(CornerRecovery(grid)
-                  .recover(scene.expose(0.7, 2.0), boardMap(scene.camera(), test_support::poseOf(grid, other)))
+                  .recover(scene.expose(0.7, 2.0), flatBoardMap(scene.camera(), test_support::poseOf(grid, other)))
                   .empty());
 }
 
@@ -242,7 +207,7 @@ TEST(CornerRecoveryTest, AnotherBoardAtThePredictedPlaceGivesNothing) {
   BoardScene scene(fisheye());
   scene.add(other, kAtTheRim);
   const target::AprilGrid grid;
-  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  const BoardMap map = flatBoardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
   EXPECT_TRUE(CornerRecovery(grid).recover(scene.expose(0.7, 2.0), map).empty());
 }
 
@@ -251,11 +216,11 @@ TEST(CornerRecoveryTest, CheckerboardsAreFoundWhicheverWayRoundTheyArePrinted) {
   BoardScene scene(fisheye());
   const BoardPose pose{0.4, 50.0 * kDegree, 0.4, 10.0 * kDegree, -15.0 * kDegree, 20.0 * kDegree};
   const auto truth = scene.add(board, pose);
-  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(board, pose));
+  const BoardMap map = flatBoardMap(scene.camera(), test_support::poseOf(board, pose));
   cv::Mat image = scene.expose(0.7, 2.0);
   for (const bool inverted : {false, true}) {
     const cv::Mat seen = inverted ? cv::Mat(255 - image) : image;
-    const Score result = score(CornerRecovery(board).recover(seen, map), truth);
+    const RecoveryScore result = recoveryScore(CornerRecovery(board).recover(seen, map), truth);
     EXPECT_GE(result.found, 0.98 * result.expected) << "of " << result.expected << (inverted ? " inverted" : "");
     EXPECT_EQ(result.wrong, 0);
   }
@@ -272,9 +237,9 @@ TEST(CornerRecoveryTest, QuadrilateralsSayLessAndNothingWrong) {
     cv::circle(scene.grey(), cv::Point(static_cast<int>(truth[60].px.x()), static_cast<int>(truth[60].px.y())), 40, 150.0F,
                cv::FILLED);
     const cv::Mat image = scene.expose(0.7, 2.0);
-    const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, pose));
-    const Score by_quads = score(CornerRecovery(grid, quads).recover(image, map), truth);
-    const Score by_image = score(CornerRecovery(grid).recover(image, map), truth);
+    const BoardMap map = flatBoardMap(scene.camera(), test_support::poseOf(grid, pose));
+    const RecoveryScore by_quads = recoveryScore(CornerRecovery(grid, quads).recover(image, map), truth);
+    const RecoveryScore by_image = recoveryScore(CornerRecovery(grid).recover(image, map), truth);
     EXPECT_GT(by_quads.found, 20) << polar_deg;
     EXPECT_LT(by_quads.found, by_image.found) << polar_deg;
     EXPECT_EQ(by_quads.wrong, 0) << polar_deg;
@@ -290,7 +255,7 @@ TEST(CornerRecoveryTest, QuadrilateralsNeedTags) {
 TEST(CornerRecoveryTest, AnImageWithoutABoardGivesNothing) {
   const target::AprilGrid grid;
   const BoardScene scene(fisheye());
-  const BoardMap map = boardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
+  const BoardMap map = flatBoardMap(scene.camera(), test_support::poseOf(grid, kAtTheRim));
   EXPECT_TRUE(CornerRecovery(grid).recover(scene.expose(0.7, 3.0), map).empty());
 }
 

@@ -67,16 +67,29 @@ struct Picture {
 
 TEST(RefineInWindow, findsCornersToATenthOfAPixelAndSaysHowWell) {
   const Picture picture;
-  const cv::Mat image = picture.scene.expose(0.7, 2.0);
-  int within_three_sigma = 0;
-  for (const TrueCorner& corner : picture.corners) {
-    const auto refined = refineInWindow(image, corner.px + Eigen::Vector2d(0.3, -0.2), {3, 40, 0.03, 2.0});
-    ASSERT_TRUE(refined) << corner.corner_id;
-    const Eigen::Vector2d error_px = refined->px - corner.px;
-    EXPECT_LT(error_px.norm(), 0.3);
-    within_three_sigma += error_px.dot(refined->cov_px2.inverse() * error_px) < 11.8 ? 1 : 0;
+  // Bent gradients of a blurred corner count as noise: of noise itself the covariance says three to six times too much where
+  // there is little.
+  struct Level {
+    double noise_grey;
+    double rms_px;
+    double normalized;
+  };
+  for (const Level& level : {Level{2.0, 0.042, 0.19}, Level{8.0, 0.114, 0.50}}) {
+    const cv::Mat image = picture.scene.expose(0.7, level.noise_grey);
+    double squared_px2 = 0.0;
+    double normalized2 = 0.0;
+    for (const TrueCorner& corner : picture.corners) {
+      const auto refined = refineInWindow(image, corner.px + Eigen::Vector2d(0.3, -0.2), {3, 40, 0.03, 2.0});
+      ASSERT_TRUE(refined) << corner.corner_id;
+      const Eigen::Vector2d error_px = refined->px - corner.px;
+      EXPECT_LT(error_px.norm(), level.noise_grey < 5.0 ? 0.11 : 0.26) << corner.corner_id;
+      squared_px2 += error_px.squaredNorm();
+      normalized2 += 0.5 * error_px.dot(refined->cov_px2.inverse() * error_px);
+    }
+    const auto count = static_cast<double>(picture.corners.size());
+    EXPECT_NEAR(std::sqrt(squared_px2 / count), level.rms_px, 0.1 * level.rms_px) << level.noise_grey;
+    EXPECT_NEAR(std::sqrt(normalized2 / count), level.normalized, 0.15 * level.normalized) << level.noise_grey;
   }
-  EXPECT_GT(within_three_sigma, static_cast<int>(picture.corners.size() * 9 / 10));
 }
 
 TEST(RefineInWindow, takesASmallerWindowAtTheBorderOfTheImage) {
