@@ -9,8 +9,12 @@ workspace=$repository/build/ws
 # catkin and roslaunch need the distribution's Python; another one first on PATH (pyenv, conda) lacks their modules.
 PATH=/usr/bin:/bin:$PATH
 
+# Caches and logs belong below build/ too, not into the home of whoever runs a script.
+export ROS_HOME=$repository/build/ros_home MPLCONFIGDIR=$repository/build/matplotlib
+
 # source_workspace: makes rosrun and roslaunch know the built package.
 source_workspace() {
+  mkdir -p "$ROS_HOME"
   set +u  # catkin's script reads variables that may be unset
   # shellcheck disable=SC1091
   source "$workspace/devel/setup.bash"
