@@ -6,6 +6,7 @@
 
 #include "board_poses.h"
 #include "check_options.h"
+#include "check_solution.h"
 #include "listen.h"
 #include "pupil_hint.h"
 #include "recover_corners.h"
@@ -243,6 +244,7 @@ void CalibrationRun::describe(CalibrationResult& result) const {
 }
 
 CalibrationResult CalibrationRun::finish() {
+  checkSolution(result_.solution);
   begin(Stage::kStatistics);
   describe(result_);
   for (const std::string& warning : resultWarnings(result_)) {

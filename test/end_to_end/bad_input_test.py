@@ -131,6 +131,14 @@ class WrongRecording(BadInput):
         board = self.board(tagCols=5, tagRows=5)
         self.assert_refused(self.calibrate(target=board), 1, "/cam0/image_raw", "6 rows and 6 columns", "5 and 5", "tagCols")
 
+    def test_a_few_tags_taken_for_another_board_give_no_calibration(self):
+        board = self.written("checkers.yaml", "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 7\n"
+                                              "rowSpacingMeters: 0.02\ncolSpacingMeters: 0.02\n")
+        bag = self.recordings.simulate("few", "--lens", "pinhole70", "--resolution", "480x400", "--views", 12, "--cameras", 2)
+        finished = self.calibrate(bag=bag, target=board)
+        bag.unlink()
+        self.assert_refused(finished, 1, "did not converge", "focal length is uncertain", "target file")
+
     def test_cameras_that_never_see_the_board_together(self):
         folder = self.folder / "apart"
         arguments = ["--lens", "pinhole70", "--resolution", "480x400", "--views", 12, "--cameras", 2]
