@@ -66,7 +66,7 @@ CornerRecovery::CornerRecovery(const target::Target& target, const RecoveryOptio
   if (const auto* grid = std::get_if<target::AprilGrid>(&target_)) {
     payload_ = std::make_shared<const TagPayload>(*grid);
   } else if (options.filter == CornerFilter::kQuads) {
-    throw InputError("corners can be filtered by quadrilaterals on an AprilGrid only, whose tags are some");
+    throw InputError("corners can be filtered by quadrilaterals on an AprilGrid only: leave out --corner-filter quads");
   }
 }
 

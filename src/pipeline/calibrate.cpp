@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "calibration_run.h"
+#include "check_options.h"
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -40,6 +41,9 @@ std::string stageName(Stage stage) {
 CalibrationResult calibrate(const std::vector<CameraStream>& streams, const target::Target& target,
                             const CalibrateOptions& options, const Listener& listener) {
   CalibrationRun run(streams.size(), target, options, listener);
+  if (options.known_rig) {
+    checkFirstImages(streams, *options.known_rig);
+  }
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const int index = static_cast<int>(i);
     const auto begin = std::chrono::steady_clock::now();

@@ -86,7 +86,7 @@ CalibrationRun::CalibrationRun(std::size_t num_cameras, const target::Target& ta
       listener_(listener),
       target_points_(target::cornerPoints(target)),
       known_rig_(options.known_rig) {
-  checkOptions(options, num_cameras);
+  checkOptions(options, target, num_cameras);
   result_.target = target;
 }
 

@@ -9,9 +9,42 @@ namespace {
 
 std::string sizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
+bool hasSize(const camera::Camera& camera, int width, int height) {
+  return camera.width == width && camera.height == height;
+}
+
+InputError otherSize(int camera_index, int width, int height, const camera::Camera& known) {
+  return InputError(cameraName(camera_index) + " has images of " + sizeText(width, height) +
+                    ", the calibration to start from is for " + sizeText(known.width, known.height) +
+                    ": calibrate without --init");
+}
+
+/// Throws InputError where the options do not fit the calibration to start from, or need one that is not there.
+void checkKnownRig(const CalibrateOptions& options, std::size_t num_cameras) {
+  const calibration::SolveOptions& solve = options.solve;
+  if (!options.known_rig) {
+    if (solve.fix_intrinsics || solve.fix_extrinsics || !solve.fixed_cameras.empty()) {
+      throw InputError("fixed parameters need a calibration to start from");
+    }
+    return;
+  }
+  const std::vector<calibration::RigCamera>& known = options.known_rig->cameras;
+  if (known.size() != num_cameras) {
+    throw InputError("the calibration to start from has " + std::to_string(known.size()) + " cameras, there are " +
+                     std::to_string(num_cameras));
+  }
+  for (std::size_t i = 0; i < num_cameras; ++i) {
+    const std::string model = camera::modelName(known[i].camera.model);
+    if (model != options.models[i]) {
+      throw InputError(cameraName(i) + " is to be " + options.models[i] + ", the calibration to start from has " + model +
+                       ": leave --models out, or calibrate without --init");
+    }
+  }
+}
+
 }  // namespace
 
-void checkOptions(const CalibrateOptions& options, std::size_t num_cameras) {
+void checkOptions(const CalibrateOptions& options, const target::Target& target, std::size_t num_cameras) {
   if (num_cameras == 0) {
     throw InputError("there is no camera to calibrate");
   }
@@ -25,18 +58,39 @@ void checkOptions(const CalibrateOptions& options, std::size_t num_cameras) {
   if (options.approx_sync_ns < 0) {
     throw InputError("the tolerance for synchronisation must not be negative");
   }
-  const calibration::SolveOptions& solve = options.solve;
-  if (!options.known_rig && (solve.fix_intrinsics || solve.fix_extrinsics || !solve.fixed_cameras.empty())) {
-    throw InputError("fixed parameters need a calibration to start from");
+  if (options.recovery.filter == detection::CornerFilter::kQuads && !std::holds_alternative<target::AprilGrid>(target)) {
+    throw InputError("corners can be filtered by quadrilaterals on an AprilGrid only: leave out --corner-filter quads");
   }
-  if (options.known_rig && options.known_rig->cameras.size() != num_cameras) {
-    throw InputError("the calibration to start from has " + std::to_string(options.known_rig->cameras.size()) +
-                     " cameras, there are " + std::to_string(num_cameras));
-  }
-  for (const int index : solve.fixed_cameras) {
+  checkKnownRig(options, num_cameras);
+  for (const int index : options.solve.fixed_cameras) {
     if (index < 0 || static_cast<std::size_t>(index) >= num_cameras) {
       throw InputError("there is no " + cameraName(index) + " to fix: the cameras are cam0 to " +
                        cameraName(static_cast<int>(num_cameras) - 1));
+    }
+  }
+}
+
+void checkFirstImages(const std::vector<CameraStream>& streams, const calibration::Rig& known_rig) {
+  constexpr int kNumImages = 3;  // a single one may be of another size: those are skipped
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const camera::Camera& known = known_rig.cameras[i].camera;
+    const ImageSource next_image = streams[i].open();
+    cv::Size seen;
+    for (int k = 0; k < kNumImages; ++k) {
+      const std::optional<StampedImage> image = next_image();
+      if (!image) {
+        break;
+      }
+      try {
+        seen = image->load().size();
+      } catch (const InputError&) {  // counted by the detection
+      }
+      if (hasSize(known, seen.width, seen.height)) {
+        break;
+      }
+    }
+    if (!seen.empty() && !hasSize(known, seen.width, seen.height)) {
+      throw otherSize(static_cast<int>(i), seen.width, seen.height, known);
     }
   }
 }
@@ -67,13 +121,8 @@ calibration::CameraSpec cameraSpec(const CalibrateOptions& options, const Camera
   spec.focal_hint_px = options.focal_hint_px;
   if (options.known_rig) {
     const camera::Camera& known = options.known_rig->cameras[at].camera;
-    if (camera::modelName(known.model) != spec.model_name) {
-      throw InputError(cameraName(camera_index) + " is to be " + spec.model_name + ", the calibration to start from has " +
-                       camera::modelName(known.model));
-    }
-    if (known.width != spec.width || known.height != spec.height) {
-      throw InputError(cameraName(camera_index) + " has images of " + sizeText(spec.width, spec.height) +
-                       ", the calibration to start from is for " + sizeText(known.width, known.height));
+    if (!hasSize(known, spec.width, spec.height)) {
+      throw otherSize(camera_index, spec.width, spec.height, known);
     }
     spec.known_model = known.model;
   }

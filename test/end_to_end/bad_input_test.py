@@ -124,6 +124,14 @@ class WrongRecording(BadInput):
                                               "rowSpacingMeters: 0.02\ncolSpacingMeters: 0.02\n")
         self.assert_refused(self.calibrate(target=board), 1, "/cam0/image_raw")
 
+    def test_another_model_or_size_than_that_to_start_from(self):
+        chain = self.folder / "rig-truth-camchain.yaml"
+        start = self.written("start.yaml", chain.read_text().replace("[480, 400]", "[400, 480]"))
+        for model, words in (("omni-none", ("is to be omni-none", "leave --models out")), ("ds-none", ("480x400", "for 400x480"))):
+            finished = self.calibrate(models=[model] * 2, extra=["--init", start])
+            self.assert_refused(finished, 1, *words, "without --init")
+            self.assertNotIn("Extracting", finished.stdout)
+
     def test_a_board_with_another_border_is_answered_with_the_remedy(self):
         self.assert_refused(self.calibrate(target=self.board(tagBorder=1)), 1, "none of its", "border of 2 cells", "tagBorder: 2")
 

@@ -232,19 +232,28 @@ TEST(CalibrateCorners, OptionsThatDoNotFitAreRejectedBeforeAnyWork) {
   options.known_rig = stereoRig();
   options.solve.fixed_cameras = {2};
   expect_rejected(options, {"no cam2 to fix", "cam0 to cam1"});
+  options = optionsFor({"pinhole-radtan", "omni-none"});
+  options.known_rig = stereoRig();
+  expect_rejected(options, {"cam1 is to be omni-none", "has ds-none", "leave --models out", "without --init"});
 }
 
 TEST(CalibrateCorners, AKnownCameraMustBeTheSame) {
   const std::vector<CameraCorners> cameras = cornersOf(stereoRig(), 6);
-  CalibrateOptions options = optionsFor({"ds-none", "ds-none"});
-  options.known_rig = stereoRig();
-  expectMessage<InputError>([&] { calibrateCorners(cameras, target::AprilGrid(), options); },
-                            {"cam0", "ds-none", "pinhole-radtan"});
-  options = optionsFor(kStereoModels);
+  CalibrateOptions options = optionsFor(kStereoModels);
   options.known_rig = stereoRig();
   options.known_rig->cameras[0].camera.width = 640;
   expectMessage<InputError>([&] { calibrateCorners(cameras, target::AprilGrid(), options); },
-                            {"cam0", "752x480", "640x480"});
+                            {"cam0", "752x480", "640x480", "without --init"});
+}
+
+TEST(CalibrateCorners, QuadrilateralsNeedTags) {
+  CalibrateOptions options = optionsFor({"pinhole-none"});
+  options.recovery.filter = detection::CornerFilter::kQuads;
+  Listener listener;
+  listener.camera_detected = [](int, const CameraCorners&) { ADD_FAILURE() << "work began"; };
+  const std::vector<CameraCorners> cameras(1);
+  expectMessage<InputError>([&] { calibrateCorners(cameras, target::Checkerboard(), options, listener); },
+                            {"AprilGrid only", "--corner-filter quads"});
 }
 
 TEST(CalibrateCorners, AFixedKnownRigKeepsItsParametersToTheBit) {
@@ -310,6 +319,28 @@ TEST(Calibrate, ImagesWithEveryTagTwiceAreLeftOutAndTold) {
   EXPECT_NEAR(parameters(0), Pinhole().focal_px, 0.01 * Pinhole().focal_px);
   const auto tells = [](const std::string& text) { return text.find("their id was there twice") != std::string::npos; };
   EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(), tells));
+}
+
+TEST(Calibrate, ImagesOfAnotherSizeThanTheKnownCamerasAreRejectedBeforeTheDetection) {
+  CalibrateOptions options = optionsFor({"pinhole-none"});
+  options.known_rig = calibration::Rig{{{cameraOf("pinhole-none", {400, 400, 376, 240}), geometry::Rigid3()}}};
+  Listener listener;
+  listener.progress = [](const Progress&) { ADD_FAILURE() << "work began"; };
+  const std::vector<CameraStream> streams = {streamOf(boardImages(3))};
+  expectMessage<InputError>([&] { calibrate(streams, smallGrid(), options, listener); },
+                            {"cam0 has images of 640x480", "752x480", "without --init"});
+}
+
+TEST(Calibrate, AFirstImageOfAnotherSizeThanTheKnownCamerasIsSkippedAsAnyOther) {
+  std::vector<StampedImage> images = boardImages(12);
+  const cv::Mat small(100, 100, CV_8UC1, cv::Scalar(128));
+  images.front().load = [small] { return small; };
+  CalibrateOptions options = optionsFor({"pinhole-none"});
+  camera::Camera known = cameraOf("pinhole-none", {400, 400, 319.5, 239.5});
+  known.width = 640;
+  options.known_rig = calibration::Rig{{{known, geometry::Rigid3()}}};
+  options.max_rounds = 0;
+  EXPECT_EQ(calibrate({streamOf(images)}, smallGrid(), options).cameras[0].num_images_used, 11U);
 }
 
 TEST(Calibrate, ATopicWithoutReadableImagesIsAnError) {
