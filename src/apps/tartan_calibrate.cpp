@@ -83,6 +83,8 @@ int run(const std::vector<std::string>& words) {
     makeFolder("debug_image_dir", command.debug_image_dir);
   }
   arguments.output_prefix = prefix.string();
+  const std::string detection_alone = (fs::path(command.save_dir) / (command.log_dest + "0")).string();
+  apps::checkInputsStay(arguments, {detection_alone + "-camchain.yaml", detection_alone + "-results-cam.txt"});
   apps::runSession(arguments, apps::commandText("tartan_calibrate", words), hooksFor(command));
   return apps::kSuccess;
 }

@@ -197,6 +197,30 @@ class CannotFinish(BadInput):
         self.assertIn("Shutdown requested! (CTRL+C)", output)
         self.assertEqual([file for file in self.folder.glob("rig-*") if "truth" not in file.name], [self.target])
 
+    def test_a_result_that_would_replace_its_own_input(self):
+        chain = self.folder / "rig-camchain.yaml"
+        shutil.copy(self.folder / "rig-truth-camchain.yaml", chain)
+        before = chain.read_bytes()
+        finished = self.calibrate(models=["ds-none"] * 2, extra=["--init", chain])
+        kept = chain.read_bytes()
+        chain.unlink()
+        self.assert_refused(finished, 1, "written over", str(chain), "--init", "copy")
+        self.assertEqual(kept, before)
+        corners = self.written("x-corners.csv", "by hand\n")
+        finished = run("calibrate_cameras", "--corners", corners, "--target", self.target, "--models", "ds-none", "--export-corners")
+        self.assert_refused(finished, 1, "written over", str(corners), "--corners", "copy")
+        self.assertEqual(corners.read_text(), "by hand\n")
+
+    def test_what_tartan_calibrate_writes_first_does_not_replace_its_input(self):
+        chain = self.folder / "x0-camchain.yaml"
+        shutil.copy(self.folder / "rig-truth-camchain.yaml", chain)
+        finished = run("tartan_calibrate", "--bag", self.bag, "--target", self.target, "--init", chain, "--save_dir", self.folder,
+                       "--log_dest", "x", "--no-report")
+        kept = chain.read_bytes()
+        chain.unlink()
+        self.assert_refused(finished, 1, "written over", str(chain), "--init")
+        self.assertEqual(kept, (self.folder / "rig-truth-camchain.yaml").read_bytes())
+
     def test_a_result_folder_that_does_not_exist(self):
         corners = self.folder / "nowhere" / "x-corners.csv"
         finished = run("calibrate_cameras", "--corners", corners, "--target", self.target, "--models", "ds-none")

@@ -2,9 +2,12 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include "common/output.h"
 #include "tartan_calib/error.h"
@@ -49,25 +52,47 @@ void checkWritable(const std::string& prefix) {
   }
 }
 
+OutputFiles outputFiles(const Arguments& arguments) {
+  const std::string prefix = outputPrefix(arguments);
+  OutputFiles files;
+  files.camchain = prefix + "-camchain.yaml";
+  files.results = prefix + "-results-cam.txt";
+  files.calibration = prefix + "-calibration.yaml";
+  files.poses = arguments.export_poses ? prefix + "-poses-cam0.csv" : "";
+  files.corners = arguments.export_corners ? prefix + kCornersSuffix : "";
+  return files;
+}
+
+void checkInputsStay(const Arguments& arguments, const std::vector<std::string>& more_outputs) {
+  const OutputFiles files = outputFiles(arguments);
+  std::vector<std::string> outputs = {files.camchain, files.results, files.calibration, files.poses, files.corners};
+  outputs.insert(outputs.end(), more_outputs.begin(), more_outputs.end());
+  const std::array<std::pair<const char*, std::string>, 3> inputs = {
+      {{"--init", arguments.init_file}, {"--corners", arguments.corners_file}, {"--target", arguments.target_file}}};
+  for (const auto& [flag, input] : inputs) {
+    for (const std::string& output : outputs) {
+      std::error_code is_missing;  // two files that are not there are not the same
+      if (!input.empty() && fs::equivalent(input, output, is_missing)) {
+        throw InputError("the result would be written over " + input + ", which " + flag +
+                         " reads: rename or copy that file, and give the new name");
+      }
+    }
+  }
+}
+
 OutputFiles writeOutputs(const pipeline::CalibrationResult& result, const Arguments& arguments,
                          const pipeline::CalibrateOptions& options, const std::string& command) {
-  const std::string prefix = outputPrefix(arguments);
   const std::string& recording = arguments.corners_file.empty() ? arguments.recording : arguments.corners_file;
   io::AtomicFileSet together;
-  const auto add = [&](std::string& path, const char* suffix) -> io::AtomicFile& {
-    path = prefix + suffix;
-    return together.add(path);
-  };
-  OutputFiles files;
-  add(files.camchain, "-camchain.yaml").write(io::camchainText(io::camchain(result)));
-  add(files.results, "-results-cam.txt").write(io::resultsText(result));
-  add(files.calibration, "-calibration.yaml")
-      .write(io::calibrationText(result, options, {recording, arguments.target_file, command}));
-  if (arguments.export_poses) {
-    add(files.poses, "-poses-cam0.csv").write(io::posesText(result));
+  OutputFiles files = outputFiles(arguments);
+  together.add(files.camchain).write(io::camchainText(io::camchain(result)));
+  together.add(files.results).write(io::resultsText(result));
+  together.add(files.calibration).write(io::calibrationText(result, options, {recording, arguments.target_file, command}));
+  if (!files.poses.empty()) {
+    together.add(files.poses).write(io::posesText(result));
   }
-  if (arguments.export_corners) {
-    io::writeCorners(pipeline::observedCorners(result), add(files.corners, kCornersSuffix));
+  if (!files.corners.empty()) {
+    io::writeCorners(pipeline::observedCorners(result), together.add(files.corners));
   }
   together.commit();
   return files;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "calibrate_cameras/arguments.h"
 #include "tartan_calib/pipeline/calibrate.h"
@@ -22,6 +23,12 @@ struct OutputFiles {
   std::string poses;
   std::string corners;
 };
+
+/// What a run of these arguments writes, besides the report.
+OutputFiles outputFiles(const Arguments& arguments);
+
+/// Throws InputError where one of these files, or of `more_outputs`, is to be read as well.
+void checkInputsStay(const Arguments& arguments, const std::vector<std::string>& more_outputs = {});
 
 /// All files are written whole, or none of them is. `command` is kept in the calibration file.
 OutputFiles writeOutputs(const pipeline::CalibrationResult& result, const Arguments& arguments,

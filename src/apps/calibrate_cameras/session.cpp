@@ -43,6 +43,7 @@ void runSession(const Arguments& arguments, const std::string& command, const Se
   for (const std::string& note : arguments.notes) {
     printWarning(note);
   }
+  checkInputsStay(arguments);
   checkWritable(outputPrefix(arguments));
   const Inputs inputs = openInputs(arguments, printWarning);
   Console console(inputs);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "calibrate_cameras/outputs.h"
 #include "calibrate_cameras/session.h"
 #include "common/program.h"
 #include "tartan_calib/io/camchain.h"
@@ -57,6 +58,7 @@ CoverageOptions coverageOptions(Parameters parameters, const ::ros::NodeHandle& 
   const Words extra = parameters.words("options", {});
   words.insert(words.end(), extra.begin(), extra.end());
   options.calibration = parseArguments(words);
+  checkInputsStay(options.calibration);
   options.command = commandText("calibrate_cameras", words);
   for (const std::string& model : options.calibration.calibrate.models) {
     camera::modelByName(model);
