@@ -92,6 +92,15 @@ struct TargetBlock {
   std::string operator()(const target::CircleGrid& /*grid*/) const { return "  Type: circlegrid\n"; }
 };
 
+/// Not among Kalibr's lines: it knows flat boards only.
+std::string warpLine(const calibration::Solution& solution) {
+  if (solution.board_warp_m.isZero()) {
+    return "";
+  }
+  const int row = calibration::intrinsicsRow(solution.rig, static_cast<int>(solution.rig.cameras.size()));
+  return "  Warp [m]: " + withStdev(solution.board_warp_m, stdevs(solution, row, solution.board_warp_m.size()));
+}
+
 }  // namespace
 
 std::string resultsText(const CalibrationResult& result) {
@@ -104,7 +113,7 @@ std::string resultsText(const CalibrationResult& result) {
     text += baselineBlock(result.solution, index);
   }
   text += "\n\nTarget configuration\n====================\n\n";
-  text += std::visit(TargetBlock{}, result.target);
+  text += std::visit(TargetBlock{}, result.target) + warpLine(result.solution);
   return text + "\n# '+-' is one standard deviation, scaled by the residuals' (" + fixedText(result.solution.sigma_px, 6) +
          " px); Kalibr prints it for residuals of 1 px.\n";
 }

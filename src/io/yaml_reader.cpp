@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include "tartan_calib/error.h"
 
@@ -32,6 +33,17 @@ std::optional<std::vector<Value>> sequence(const YAML::Node& node, const Read& r
   return values;
 }
 
+/// Which of two values a parser takes is its own affair, so none of them is taken.
+void rejectDuplicates(const YAML::Node& map, const std::string& name) {
+  std::set<std::string> keys;
+  for (const auto& entry : map) {
+    if (entry.first.IsScalar() && !keys.insert(entry.first.Scalar()).second) {
+      throw InputError(yamlPlace(name, entry.first) + ": the key '" + entry.first.Scalar() +
+                       "' is there for the second time: keep one of them");
+    }
+  }
+}
+
 }  // namespace
 
 YAML::Node parseYamlMap(const std::string& text, const std::string& name) {
@@ -44,6 +56,7 @@ YAML::Node parseYamlMap(const std::string& text, const std::string& name) {
   if (!document.IsMap()) {
     throw InputError(name + ": expected YAML with 'key: value' lines");
   }
+  rejectDuplicates(document, name);
   return document;
 }
 

@@ -8,7 +8,8 @@
 
 namespace tartan_calib::io {
 
-/// The document as a map. Throws InputError with name, line and the parser's reason where it is none.
+/// The document as a map. Throws InputError with name, line and the parser's reason where it is none,
+/// and where a key is there twice.
 YAML::Node parseYamlMap(const std::string& text, const std::string& name);
 
 /// Value of a scalar that YAML reads as that type; empty for anything else, quoted numbers among them.

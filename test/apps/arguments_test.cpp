@@ -234,6 +234,15 @@ TEST(Arguments, AskForHelpWithoutTheRest) {
   EXPECT_TRUE(parseArguments({"--help"}).help);
 }
 
+TEST(Arguments, AFlagIsNoValueOfTheOneBefore) {
+  try {
+    parseArguments({"--bag", "x.bag", "--target", "t.yaml", "--topics", "--models", "ds-none"});
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("between --topics and --models"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Help, NamesEveryFlag) {
   Words flags = kalibrFlags();
   const Words own = ownFlags();

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "calibrate_cameras/session.h"
 #include "common/progress_bar.h"
 
 namespace tartan_calib::apps {
@@ -17,6 +18,13 @@ std::string prefixOf(const std::string& recording, const std::string& corners = 
   arguments.recording = recording;
   arguments.corners_file = corners;
   return outputPrefix(arguments);
+}
+
+TEST(CommandText, IsReadBackByAShell) {
+  EXPECT_EQ(commandText("calibrate", {"--bag", "a/b.bag", "--approx-sync=0.02"}),
+            "calibrate --bag a/b.bag --approx-sync=0.02");
+  EXPECT_EQ(commandText("calibrate", {"--bag", "a b.bag", "it's", "$x", ""}),
+            R"(calibrate --bag 'a b.bag' 'it'\''s' '$x' '')");
 }
 
 TEST(OutputPrefix, OfABagIsItsPathWithoutTheLastExtension) {

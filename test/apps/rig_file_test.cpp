@@ -50,6 +50,12 @@ TEST_F(RigFile, ItsKeysAreFlagsBeforeThoseOfTheCommandLine) {
   EXPECT_EQ(withRigFile({"--bag", "x.bag", "--rig=" + file, "--threads", "1"}), expected);
 }
 
+TEST_F(RigFile, IsFoundByAShortenedFlagAndOnlyOnce) {
+  const std::string file = write("target: t.yaml\nmodels: ds-none\ntopics: /a\n");
+  EXPECT_EQ(parseArguments({"--ri", file, "--bag", "x.bag"}).topics, (Words{"/a"}));
+  EXPECT_THROW(parseArguments({"--rig", file, "--bag", "x.bag", "--rig", file}), UsageError);
+}
+
 TEST_F(RigFile, FileNamesAreRelativeToIt) {
   const Words words = withRigFile({"--rig", write("target: ../board.yaml\ninit: /abs/camchain.yaml\n")});
   EXPECT_EQ(words, (Words{"--target", (folder_.parent_path() / "board.yaml").lexically_normal().string(), "--init",

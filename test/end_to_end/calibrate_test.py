@@ -76,6 +76,13 @@ class SimulatedRig(unittest.TestCase):
             for value, other in zip(first[name]["intrinsics"], again[name]["intrinsics"]):
                 self.assertAlmostEqual(value, other, delta=2e-4 * max(1.0, abs(value)))  # the file has 1e-4 px
 
+    def test_beside_corners_a_bag_gives_only_its_name(self):
+        bag, corners = self.recordings.path / "named.bag", self.output("corners.csv")
+        finished = calibrate(bag, self.target, MODELS, extra=["--corners", corners])
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        self.assertIn(f"the images of {bag} are not read", finished.stdout)
+        self.assertTrue(self.output("camchain.yaml", "named").exists())
+
     def test_a_bag_made_of_a_folder_calibrates_as_the_folder_does(self):
         folder, bag = self.recordings.path / "folder", self.recordings.path / "packed.bag"
         views = ["--resolution", "640x512", "--views", 10]

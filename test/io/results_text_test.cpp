@@ -128,6 +128,19 @@ TEST(ResultsText, SaysHowTheUncertaintyIsScaledAfterKalibrsPart) {
   EXPECT_NE(text.find("[m]\n\n# '+-' is one standard deviation, scaled by the residuals' (0.050000 px)"), std::string::npos);
 }
 
+TEST(ResultsText, TellsTheBoardsWarpWhereItWasFitted) {
+  const camera::Camera camera = exampleCamera("pinhole-none", {400, 400, 320, 240});
+  pipeline::CalibrationResult result = resultOf({{camera, geometry::Rigid3()}});
+  EXPECT_EQ(resultsText(result).find("Warp"), std::string::npos);
+  result.solution.board_warp_m << 0.00125, -0.0025;
+  result.solution.covariance = Eigen::MatrixXd::Zero(6, 6);
+  result.solution.covariance.diagonal().tail<2>() << 1e-8, 4e-8;
+  EXPECT_NE(
+      resultsText(result).find("    Spacing 0.026399999999999996 [m]\n  Warp [m]: [ 0.00125 -0.0025 ] +- [0.0001 0.0002]\n"),
+      std::string::npos)
+      << resultsText(result);
+}
+
 TEST(ResultsText, PrintsCheckerboardsAsKalibr) {
   const camera::Camera camera = exampleCamera("pinhole-none", {400, 400, 320, 240});
   pipeline::CalibrationResult result = resultOf({{camera, geometry::Rigid3()}});

@@ -154,6 +154,11 @@ TEST(TargetYaml, WhatIsNoYamlMapIsAnErrorWithFileAndReason) {
   }
 }
 
+TEST(TargetYaml, AKeyThatIsThereTwiceIsAnErrorWithFileLineAndKey) {
+  const std::string text = "target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 0.3\ntagSize: 0.8\n";
+  expectMessage<InputError>([&] { parseTarget(text, "board.yaml"); }, {"board.yaml:6: ", "'tagSize'", "second time"});
+}
+
 TEST(TargetYaml, AMissingFileIsAnErrorInKalibrsWords) {
   const TemporaryFolder folder;
   const std::string path = folder.file("missing.yaml");

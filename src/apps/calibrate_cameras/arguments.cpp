@@ -170,7 +170,10 @@ void checkComplete(const Arguments& arguments, const Flags& flags) {
 }  // namespace
 
 Arguments parseArguments(const std::vector<std::string>& words) {
-  const Flags flags = parseFlags(withRigFile(words));
+  const Flags flags = parseFlags(withRigFile(withFullNames(words)));
+  if (flags.has("rig")) {
+    throw UsageError("--rig is there twice, or stands in a rig file: one file holds all flags of a rig");
+  }
   Arguments arguments;
   arguments.help = flags.has("help");
   if (arguments.help) {

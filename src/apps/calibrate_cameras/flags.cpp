@@ -31,6 +31,7 @@ po::options_description ownOptions() {
   const auto columns = [] { return po::value<std::vector<double>>()->multitoken()->composing(); };
   po::options_description options;
   auto add = options.add_options();
+  add("rig", po::value<std::string>(), "");
   add("init", po::value<std::string>(), "");
   add("fix", po::value<Words>()->multitoken()->composing(), "");
   add("estimate-board-warp", "");
@@ -97,20 +98,13 @@ std::string fullName(std::string prefix) {
   throw UsageError("flag --" + prefix + " is ambiguous: --" + joined(all, ", --"));
 }
 
-/// Every flag by its full name.
-Words expanded(const Words& words) {
-  Words result;
-  for (const std::string& word : words) {
-    if (word == "-h") {
-      result.emplace_back("--help");
-    } else if (word.size() > 2 && word.compare(0, 2, "--") == 0) {
-      const std::size_t end = std::min(word.find('='), word.size());
-      result.push_back("--" + fullName(word.substr(2, end - 2)) + word.substr(end));
-    } else {
-      result.push_back(word);
+/// A list takes at least one word, even where that is the next flag.
+void checkValues(const po::option& option) {
+  for (const std::string& value : option.value) {
+    if (value.compare(0, 2, "--") == 0) {
+      throw UsageError("a value is missing between --" + option.string_key + " and " + value + "; see --help");
     }
   }
-  return result;
 }
 
 /// Of a flag that is given more than once the last one counts, except for those that collect.
@@ -152,6 +146,21 @@ std::vector<std::string> kalibrFlags() { return names(kalibrOptions()); }
 
 std::vector<std::string> ownFlags() { return names(ownOptions()); }
 
+Words withFullNames(const Words& words) {
+  Words result;
+  for (const std::string& word : words) {
+    if (word == "-h") {
+      result.emplace_back("--help");
+    } else if (word.size() > 2 && word.compare(0, 2, "--") == 0) {
+      const std::size_t end = std::min(word.find('='), word.size());
+      result.push_back("--" + fullName(word.substr(2, end - 2)) + word.substr(end));
+    } else {
+      result.push_back(word);
+    }
+  }
+  return result;
+}
+
 Flags parseFlags(const std::vector<std::string>& words) {
   po::options_description description;
   description.add(kalibrOptions()).add(ownOptions());
@@ -159,11 +168,12 @@ Flags parseFlags(const std::vector<std::string>& words) {
                     po::command_line_style::long_allow_next;
   po::variables_map values;
   try {
-    po::parsed_options parsed = po::command_line_parser(expanded(words)).options(description).style(style).run();
+    po::parsed_options parsed = po::command_line_parser(withFullNames(words)).options(description).style(style).run();
     for (const po::option& option : parsed.options) {
       if (option.string_key.empty()) {
         throw UsageError("unexpected word '" + option.original_tokens.front() + "'; see --help");
       }
+      checkValues(option);
     }
     for (const char* flag : {"fovs", "poses", "resolutions"}) {
       checkRows(flag, parsed.options);

@@ -32,6 +32,10 @@ class Flags {
 /// Throws UsageError that names the flag.
 Flags parseFlags(const std::vector<std::string>& words);
 
+/// The words with every flag by its full name: `--topic` becomes `--topics`, `-h` `--help`. Throws UsageError where a flag
+/// is unknown or ambiguous.
+std::vector<std::string> withFullNames(const std::vector<std::string>& words);
+
 /// Kalibr's flags, and those of this program alone; without the leading `--`.
 std::vector<std::string> kalibrFlags();
 std::vector<std::string> ownFlags();

@@ -78,6 +78,10 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
   if (!arguments.init_file.empty()) {
     applyInit(arguments.init_file, inputs);
   }
+  if (!arguments.corners_file.empty() && !arguments.recording.empty()) {
+    warn("the images of " + arguments.recording +
+         " are not read, as --corners takes their place; the results are named after the recording");
+  }
   if (!arguments.corners_file.empty()) {
     inputs.dataset = arguments.corners_file;
     inputs.corners = openCorners(arguments.corners_file, inputs.topics);

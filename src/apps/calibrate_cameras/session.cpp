@@ -29,12 +29,25 @@ void reportOn(const pipeline::CalibrationResult& result, const Inputs& inputs, c
   }
 }
 
+/// A word as a shell reads it back.
+std::string quoted(const std::string& word) {
+  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+    return word;
+  }
+  std::string text = "'";
+  for (const char letter : word) {
+    text += letter == '\'' ? "'\\''" : std::string(1, letter);
+  }
+  return text + "'";
+}
+
 }  // namespace
 
 std::string commandText(const std::string& program, const std::vector<std::string>& words) {
   std::string text = program;
   for (const std::string& word : words) {
-    text += " " + word;
+    text += " " + quoted(word);
   }
   return text;
 }

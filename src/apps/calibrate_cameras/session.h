@@ -20,7 +20,7 @@ struct SessionHooks {
 /// in the calibration file.
 void runSession(const Arguments& arguments, const std::string& command, const SessionHooks& hooks = {});
 
-/// The words of a command line behind the program's name, as one text.
+/// The words of a command line behind the program's name, as a shell takes them.
 std::string commandText(const std::string& program, const std::vector<std::string>& words);
 
 }  // namespace tartan_calib::apps
