@@ -123,7 +123,7 @@ Eigen::VectorXd upperBound(const CameraModel& model) {
 
 std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Vector3d& p_cam, Matrix23d* J_px_pcam,
                                        ParameterJacobian* J_px_parameters) {
-  const auto projectThrough = [&](const auto& m) -> std::optional<Eigen::Vector2d> {
+  const auto projected = [&](const auto& m) -> std::optional<Eigen::Vector2d> {
     Eigen::Vector2d px;
     if (J_px_parameters == nullptr) {
       return m.project(p_cam, px, J_px_pcam) ? std::make_optional(px) : std::nullopt;
@@ -135,7 +135,7 @@ std::optional<Eigen::Vector2d> project(const CameraModel& model, const Eigen::Ve
     *J_px_parameters = J;
     return px;
   };
-  return std::visit(projectThrough, model);
+  return std::visit(projected, model);
 }
 
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_cam, Matrix23d* J_px_pcam) {
@@ -143,7 +143,7 @@ std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector
     return project(camera.model, p_cam, J_px_pcam);
   }
   Eigen::Matrix3d J_p;
-  const auto px = project(camera.model, camera.pupil.apply(p_cam, &J_p), J_px_pcam);
+  auto px = project(camera.model, camera.pupil.apply(p_cam, &J_p), J_px_pcam);
   if (px && J_px_pcam != nullptr) {
     *J_px_pcam *= J_p;
   }
