@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from benchmarks.common import read_corners, table
+from benchmarks.common import Failed, read_corners, table
 from benchmarks.detectors import RECORDINGS, available
 from benchmarks.truth import MAX_ERROR_PX, Score, Truth, bands
 
@@ -10,6 +10,8 @@ from benchmarks.truth import MAX_ERROR_PX, Score, Truth, bands
 def resolution(path):
     """Width and height in the first line of a corner file."""
     comments, _ = read_corners(path)
+    if not comments or len(comments[0].split()) != 5:
+        raise Failed(f"{path} does not begin with '# cam0 <width> <height> <topic>', as corner files do")
     return comments[0].split()[2:4]
 
 

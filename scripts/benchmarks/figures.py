@@ -80,7 +80,7 @@ def plot_scatter(recording):
 
 
 PAPER_WINDOW = 0.3  # half the window in which the paper samples [tag sides]
-OUR_WINDOW = 0.15  # ours for a border of two cells
+OUR_WINDOW = 0.18  # ours for a border of two cells, of which the default is 0.9
 SAMPLES = 24  # along half a window
 SEARCH_PX = 2.5
 
@@ -111,7 +111,7 @@ def plot_symmetry(recording, stamp_ns, corner_id):
     figure, axes = plt.subplots(1, 3, figsize=(12.5, 4.4))
     axes[0].imshow(image, cmap="gray", vmin=0, vmax=255)
     for axis, window, colour, title in [(axes[1], PAPER_WINDOW, "#E69F00", "the paper's window, ±0.3 tag"),
-                                        (axes[2], OUR_WINDOW, "#56B4E9", "this window, ±0.15 tag")]:
+                                        (axes[2], OUR_WINDOW, "#56B4E9", "this window, ±0.18 tag")]:
         half = window * target["tagSize"]
         outline = project(camera, T_cam_target, point + half * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]]))
         axes[0].plot(*outline.T, color=colour, label=title)

@@ -15,11 +15,11 @@ using Words = std::vector<std::string>;
 
 class RigFile : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { std::filesystem::create_directories(folder); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
 
   std::string write(const std::string& text) const {
-    const std::string file = (folder_ / "rig.yaml").string();
+    std::string file = (folder / "rig.yaml").string();
     std::ofstream(file) << text;
     return file;
   }
@@ -33,7 +33,7 @@ class RigFile : public testing::Test {
     return "no error";
   }
 
-  const std::filesystem::path folder_ =
+  const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
@@ -58,7 +58,7 @@ TEST_F(RigFile, IsFoundByAShortenedFlagAndOnlyOnce) {
 
 TEST_F(RigFile, FileNamesAreRelativeToIt) {
   const Words words = withRigFile({"--rig", write("target: ../board.yaml\ninit: /abs/camchain.yaml\n")});
-  EXPECT_EQ(words, (Words{"--target", (folder_.parent_path() / "board.yaml").lexically_normal().string(), "--init",
+  EXPECT_EQ(words, (Words{"--target", (folder.parent_path() / "board.yaml").lexically_normal().string(), "--init",
                           "/abs/camchain.yaml"}));
 }
 
