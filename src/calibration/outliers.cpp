@@ -16,8 +16,10 @@ constexpr double kGrossSigma = 10.0;    ///< robust stdevs: beyond any misfit of
 constexpr double kUsualMisfit_px = 0.1;
 constexpr double kNeverOutlier_px = 0.3;  ///< no wrong corner lies this close
 /// Where a model is too simple by tenths of a pixel it errs most at the rim, there for all corners: 4 stdevs of all corners
-/// would take the rim away. Corners up to this far off may stay there.
+/// would take the rim away. Corners up to this far off may stay there. Such a model is told from noise by errors that are so
+/// many times what the corners' covariances say.
 constexpr double kMisfitNeverOutlier_px = 1.2;
+constexpr double kMisfit_ratio = 4.0;
 constexpr int kMinPoseCorners = 4;   ///< of a view: fewer leave its pose undetermined or ambiguous
 constexpr int kMaxSigmaPasses = 20;  ///< rejection lowers sigma, which rejects more; settles within a few passes
 
@@ -92,11 +94,22 @@ Eigen::Array2d stdevOfUsed(const std::vector<Candidate>& candidates) {
   return (sum_of_squares / n - (sum / n).square()).max(0.0).sqrt().max(kMinSigma);
 }
 
+/// No corner closer than this [px] is an outlier.
+double harmlessError_px(const std::vector<Candidate>& candidates) {
+  std::vector<double> own_sigmas_px;
+  for (const Candidate& candidate : candidates) {
+    own_sigmas_px.push_back(std::sqrt(0.5 * candidate.corner->cov_px2.trace()));
+  }
+  const double sigma_px = robustSigma(candidates);
+  const bool is_misfit = !own_sigmas_px.empty() && sigma_px > kMisfit_ratio * upperMedian(own_sigmas_px);
+  return is_misfit ? std::clamp(kGrossSigma * sigma_px, kNeverOutlier_px, kMisfitNeverOutlier_px) : kNeverOutlier_px;
+}
+
 /// Kalibr's rule, which it applies after every view it adds: here until it rejects no more.
 void rejectBySigma(double outlier_sigma, const std::vector<Candidate>& candidates) {
-  const double never_px = std::clamp(kGrossSigma * robustSigma(candidates), kNeverOutlier_px, kMisfitNeverOutlier_px);
+  const double harmless_px = harmlessError_px(candidates);
   for (int pass = 0; pass < kMaxSigmaPasses; ++pass) {
-    if (!rejectBeyond((outlier_sigma * stdevOfUsed(candidates)).max(never_px), candidates)) {
+    if (!rejectBeyond((outlier_sigma * stdevOfUsed(candidates)).max(harmless_px), candidates)) {
       return;
     }
   }

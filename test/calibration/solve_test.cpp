@@ -143,7 +143,11 @@ TEST(Solve, KeepsTheRimOfALensThatTheModelIsTooSimpleFor) {
   Rig rig;
   rig.cameras.push_back({{camera::withParameters(camera::modelByName("ds-none"), lens), 1224, 1024}, {}});
   const Scene scene = test_support::simulateScene(rig, options);
-  Problem problem = noisyProblem(scene, 0.02, 5);
+  constexpr double kSharp_px = 0.02;
+  Problem problem = noisyProblem(scene, kSharp_px, 5);
+  test_support::forEachCorner(problem.views, [](observation::Corner& corner) {
+    corner.cov_px2 = kSharp_px * kSharp_px * Eigen::Matrix2d::Identity();
+  });
   Eigen::VectorXd start(6);
   start << 0.6, 1.0, lens(2) / (1.0 + lens(0)), lens(3) / (1.0 + lens(0)), lens(4), lens(5);
   problem.rig.cameras[0].camera.model = camera::withParameters(camera::modelByName("eucm-none"), start);
