@@ -12,7 +12,7 @@ constexpr const char* kHelp =
   rosrun tartan_calib validation_node _camchain:=rig-camchain.yaml _target:=board.yaml
   rosrun image_view image_view image:=/validation_node/cam0/overlay
 
-roslaunch tartan_calib validate.launch does that. Parameters (docs/live.md has the topics too):
+roslaunch tartan_calib validate.launch does that. Parameters (docs/live.md has the topics too; --help prints this):
 
   ~camchain        calibration of the cameras, which stays as it is
   ~target          YAML file of the board

@@ -107,7 +107,7 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertAlmostEqual(percent, 100.0 * stdev / focal, delta=0.3)
 
     def test_few_and_flat_views(self):
-        bag = self.recordings.simulate("flat", *PINHOLE[:-1], 3, "--reach", 0, "--tilt", 0)
+        bag = self.recordings.simulate("flat", *PINHOLE[:-1], 3, "--reach", 0.1, "--tilt", 5)
         verdict = self.verdict(bag, ["pinhole-radtan"])
         self.assertEqual(verdict[0], "repeat")
         self.reason(verdict, r"repeat: cam0: only 3 views")
