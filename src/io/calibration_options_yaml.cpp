@@ -1,6 +1,7 @@
 #include "calibration_options_yaml.h"
 
 #include "number_text.h"
+#include "target_text.h"
 
 namespace tartan_calib::io {
 namespace {
@@ -84,35 +85,6 @@ void addProjections(YamlWriter& yaml, const pipeline::Projections& projections) 
   yaml.close();
 }
 
-struct AddTarget {
-  YamlWriter& yaml;
-
-  void operator()(const target::AprilGrid& grid) const {
-    yaml.add("target_type", "aprilgrid");
-    yaml.add("tagCols", std::to_string(grid.tag_cols));
-    yaml.add("tagRows", std::to_string(grid.tag_rows));
-    yaml.add("tagSize", yamlFloat(grid.tag_size_m));
-    yaml.add("tagSpacing", yamlFloat(grid.tag_spacing_ratio));
-    yaml.add("tagFamily", yamlString(grid.family));
-    yaml.add("codeOffset", std::to_string(grid.code_offset));
-    yaml.add("tagBorder", std::to_string(grid.border_cells));
-  }
-  void operator()(const target::Checkerboard& board) const {
-    yaml.add("target_type", "checkerboard");
-    yaml.add("targetCols", std::to_string(board.cols));
-    yaml.add("targetRows", std::to_string(board.rows));
-    yaml.add("rowSpacingMeters", yamlFloat(board.row_spacing_m));
-    yaml.add("colSpacingMeters", yamlFloat(board.col_spacing_m));
-  }
-  void operator()(const target::CircleGrid& grid) const {
-    yaml.add("target_type", "circlegrid");
-    yaml.add("targetCols", std::to_string(grid.cols));
-    yaml.add("targetRows", std::to_string(grid.rows));
-    yaml.add("spacingMeters", yamlFloat(grid.spacing_m));
-    yaml.add("asymmetricGrid", yamlBool(grid.asymmetric));
-  }
-};
-
 }  // namespace
 
 void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target::Target& target) {
@@ -143,7 +115,7 @@ void addOptions(YamlWriter& yaml, const CalibrateOptions& options, const target:
 
 void addTarget(YamlWriter& yaml, const target::Target& target) {
   yaml.open("target");
-  std::visit(AddTarget{yaml}, target);
+  addTargetKeys(yaml, target);
   yaml.close();
 }
 

@@ -1,6 +1,7 @@
+#include "target_text.h"
+
 #include "number_text.h"
 #include "tartan_calib/io/target_yaml.h"
-#include "yaml_writer.h"
 
 namespace tartan_calib::io {
 namespace {
@@ -36,9 +37,11 @@ struct TargetWriter {
 
 }  // namespace
 
+void addTargetKeys(YamlWriter& yaml, const target::Target& target) { std::visit(TargetWriter{yaml}, target); }
+
 std::string targetText(const target::Target& target) {
   YamlWriter yaml;
-  std::visit(TargetWriter{yaml}, target);
+  addTargetKeys(yaml, target);
   return yaml.text();
 }
 
