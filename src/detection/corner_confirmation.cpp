@@ -8,8 +8,6 @@
 namespace tartan_calib::detection {
 namespace {
 
-/// A wrong payload of 36 cells correlates by 0 +- 0.17.
-constexpr double kConfirmingCorrelation = 0.5;
 /// Without its payload a corner must look better than with it.
 constexpr double kUnconfirmedCorrelation = 0.9;
 /// A corner is as light as its neighbours: hands and glare are flatter.
@@ -20,25 +18,30 @@ std::size_t tagOf(const target::AprilGrid& grid, const CornerCandidate& candidat
   return static_cast<std::size_t>(tag_index);
 }
 
-/// By tag: whether the payload is where one of the found corners says.
-std::vector<bool> confirmedTags(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid,
-                                const TagPayload& payload, const std::vector<CornerCandidate>& candidates) {
-  std::vector<bool> confirmed(static_cast<std::size_t>(target::numTags(grid)), false);
+/// By tag: what its payload shows where the found corners say that it is. One that sees this tag there is believed.
+std::vector<PayloadVerdict> payloadVerdicts(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid,
+                                            const TagPayload& payload, const std::vector<CornerCandidate>& candidates) {
+  std::vector<PayloadVerdict> verdicts(static_cast<std::size_t>(target::numTags(grid)), PayloadVerdict::kUnclear);
   for (const CornerCandidate& candidate : candidates) {
     const std::size_t tag = tagOf(grid, candidate);
-    if (candidate.isFound() && !confirmed[tag]) {
-      confirmed[tag] = payload.correlation(gray, map, static_cast<int>(tag), candidate.shift_px()) > kConfirmingCorrelation;
+    if (!candidate.isFound() || verdicts[tag] == PayloadVerdict::kThisTag) {
+      continue;
+    }
+    const PayloadVerdict verdict = payload.verdict(gray, map, static_cast<int>(tag), candidate.shift_px());
+    if (verdict != PayloadVerdict::kUnclear) {
+      verdicts[tag] = verdict;
     }
   }
-  return confirmed;
+  return verdicts;
 }
 
 }  // namespace
 
 void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid, const TagPayload& payload,
                      std::vector<CornerCandidate>& candidates) {
-  const std::vector<bool> confirmed = confirmedTags(gray, map, grid, payload, candidates);
-  const auto on_confirmed_tag = [&](std::size_t i) { return confirmed[tagOf(grid, candidates[i])]; };
+  const std::vector<PayloadVerdict> verdicts = payloadVerdicts(gray, map, grid, payload, candidates);
+  const auto verdict_of = [&](std::size_t i) { return verdicts[tagOf(grid, candidates[i])]; };
+  const auto on_confirmed_tag = [&](std::size_t i) { return verdict_of(i) == PayloadVerdict::kThisTag; };
   std::vector<double> contrasts;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].isFound() && on_confirmed_tag(i)) {
@@ -52,8 +55,9 @@ void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::Apr
     if (!candidate.isFound()) {
       continue;
     }
-    const bool vouched =
-        candidate.match->correlation >= kUnconfirmedCorrelation && neighbourShift(candidates, i, on_confirmed_tag);
+    const bool vouched = verdict_of(i) == PayloadVerdict::kUnclear &&
+                         candidate.match->correlation >= kUnconfirmedCorrelation &&
+                         neighbourShift(candidates, i, on_confirmed_tag);
     if (candidate.match->contrast < least_contrast || (!on_confirmed_tag(i) && !vouched)) {
       unconfirmed.push_back(i);
     }

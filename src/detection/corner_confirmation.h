@@ -11,8 +11,8 @@
 namespace tartan_calib::detection {
 
 /// Drops the corners of an AprilGrid that nothing but their own looks speaks for: those that are flat against the others,
-/// and those on tags whose payload is not in the image, unless they look perfect and corners on tags that are vouch for
-/// them.
+/// those on tags whose payload is another's, and those on tags whose payload cannot be told, unless they look perfect and
+/// corners on tags whose payload is in the image vouch for them.
 void dropUnconfirmed(const cv::Mat& gray, const BoardMap& map, const target::AprilGrid& grid, const TagPayload& payload,
                      std::vector<CornerCandidate>& candidates);
 

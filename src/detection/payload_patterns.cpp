@@ -1,14 +1,12 @@
 #include "payload_patterns.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 namespace tartan_calib::detection {
 namespace {
 
-constexpr std::array<double, 3> kBlurSigmasInCells = {0.4, 0.7, 1.1};
 constexpr double kMinSpread = 0.15;  ///< rms of cells about their mean, where ink is -1 and paper 1: less is no payload
 
 double meanOf(const std::vector<double>& values) {
@@ -58,11 +56,12 @@ std::vector<double> blurredCells(const target::TagFamily& family, int tag_id, do
 
 }  // namespace
 
-PayloadPatterns::PayloadPatterns(const target::TagFamily& family, int first_id, int num_tags)
+PayloadPatterns::PayloadPatterns(const target::TagFamily& family, int first_id, int num_tags,
+                                 const std::vector<double>& blur_sigmas_cells)
     : payload_cells_(family.payload_cells) {
   for (int tag = 0; tag < num_tags; ++tag) {
     std::vector<std::vector<double>> blurs;
-    for (const double sigma_cells : kBlurSigmasInCells) {
+    for (const double sigma_cells : blur_sigmas_cells) {
       blurs.push_back(blurredCells(family, first_id + tag, sigma_cells));
     }
     patterns_.push_back(std::move(blurs));
@@ -77,22 +76,43 @@ double PayloadPatterns::correlation(const std::vector<double>& cells, int tag_in
   if (!isPayload(cells)) {
     return 0.0;
   }
-  const int n = payload_cells_;
-  std::vector<double> turned = cells;
-  for (int turn = 0; turn < top_left; ++turn) {
-    const std::vector<double> before = turned;
-    for (int i = 0; i < n * n; ++i) {
-      turned[static_cast<std::size_t>(i)] = before[static_cast<std::size_t>(i % n * n + n - 1 - i / n)];
+  std::vector<double> upright = turned(cells, top_left);
+  normalize(upright);
+  return bestOverBlurs(upright, tag_index);
+}
+
+PayloadPatterns::Likeness PayloadPatterns::mostAlike(const std::vector<double>& cells) const {
+  constexpr int kTurns = 4;
+  std::vector<double> normalized = cells;
+  normalize(normalized);
+  Likeness best;
+  for (int top_left = 0; top_left < kTurns; ++top_left) {
+    const std::vector<double> upright = turned(normalized, top_left);
+    for (int tag = 0; tag < static_cast<int>(patterns_.size()); ++tag) {
+      const double correlation = bestOverBlurs(upright, tag);
+      if (correlation > best.correlation) {
+        best = {tag, top_left, correlation};
+      }
     }
   }
-  normalize(turned);
+  return best;
+}
+
+std::vector<double> PayloadPatterns::turned(std::vector<double> cells, int top_left) const {
+  const int n = payload_cells_;
+  for (int turn = 0; turn < top_left; ++turn) {
+    const std::vector<double> before = cells;
+    for (int i = 0; i < n * n; ++i) {
+      cells[static_cast<std::size_t>(i)] = before[static_cast<std::size_t>(i % n * n + n - 1 - i / n)];
+    }
+  }
+  return cells;
+}
+
+double PayloadPatterns::bestOverBlurs(const std::vector<double>& normalized_cells, int tag_index) const {
   double best = -1.0;
   for (const std::vector<double>& pattern : patterns_[static_cast<std::size_t>(tag_index)]) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < pattern.size(); ++i) {
-      sum += pattern[i] * turned[i];
-    }
-    best = std::max(best, sum);
+    best = std::max(best, std::inner_product(pattern.begin(), pattern.end(), normalized_cells.begin(), 0.0));
   }
   return best;
 }

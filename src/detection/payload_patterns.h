@@ -10,8 +10,17 @@ namespace tartan_calib::detection {
 /// more, but whose place on the board can.
 class PayloadPatterns {
  public:
-  /// Tags first_id, first_id + 1, ... of the family.
-  PayloadPatterns(const target::TagFamily& family, int first_id, int num_tags);
+  /// The tag that cells look like most.
+  struct Likeness {
+    int tag_index = -1;
+    int top_left = 0;
+    double correlation = -1.0;
+  };
+
+  /// Tags first_id, first_id + 1, ... of the family, each under Gaussian blurs [cells], by default of all strengths at which
+  /// tags of a board can be told apart.
+  PayloadPatterns(const target::TagFamily& family, int first_id, int num_tags,
+                  const std::vector<double>& blur_sigmas_cells = {0.4, 0.7, 1.1});
 
   /// False for cells that are all about alike, such as those of the small squares between tags.
   static bool isPayload(const std::vector<double>& cells);
@@ -20,7 +29,13 @@ class PayloadPatterns {
   /// `top_left`, for the kind of blur that fits best. 0 where the cells are all alike.
   double correlation(const std::vector<double>& cells, int tag_index, int top_left) const;
 
+  /// The best of all tags in all four turns.
+  Likeness mostAlike(const std::vector<double>& cells) const;
+
  private:
+  std::vector<double> turned(std::vector<double> cells, int top_left) const;
+  double bestOverBlurs(const std::vector<double>& normalized_cells, int tag_index) const;
+
   int payload_cells_;
   std::vector<std::vector<std::vector<double>>> patterns_;  ///< [tag][blur]: cells with mean 0 and length 1
 };

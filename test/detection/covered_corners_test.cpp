@@ -62,10 +62,10 @@ TEST(CoveredCornersTest, GlareHidesCornersAndMakesNoFalseOnes) {
 }
 
 /// Of the places of corners, those that the sheet of a board covers.
-std::set<int> coveredBy(const target::Target& board, const BoardPose& pose,
+std::set<int> coveredBy(const target::Target& board, const geometry::Rigid3& T_cam_board,
                         const std::vector<simulation::TrueCorner>& corners) {
-  const simulation::BoardLayer layer = simulation::drawBoard(simulation::boardPattern(board, BoardScene::kMargin_m),
-                                                             fisheye(), test_support::poseOf(board, pose));
+  const simulation::BoardLayer layer =
+      simulation::drawBoard(simulation::boardPattern(board, BoardScene::kMargin_m), fisheye(), T_cam_board);
   std::set<int> covered;
   for (const simulation::TrueCorner& corner : corners) {
     const cv::Point pixel(static_cast<int>(std::lround(corner.px.x())), static_cast<int>(std::lround(corner.px.y())));
@@ -88,13 +88,55 @@ TEST(CoveredCornersTest, CornersBehindASecondBoardAreNotFoundOnThatOne) {
       BoardScene scene(fisheye());
       const auto truth = scene.add(kGrid, kPose);
       scene.add(second, pose);
-      const std::set<int> covered = coveredBy(second, pose, truth);
+      const std::set<int> covered = coveredBy(second, test_support::poseOf(second, pose), truth);
       EXPECT_GT(covered.size(), 70U);
       const auto corners = CornerRecovery(kGrid).recover(scene.expose(0.7, 2.0), mapOf(kPose));
       EXPECT_EQ(recoveryScore(corners, truth).wrong, 0);
       EXPECT_GE(static_cast<double>(corners.size()), 0.9 * static_cast<double>(truth.size() - covered.size()));
       for (const int id : ids(corners)) {
         EXPECT_EQ(covered.count(id), 0U) << "corner " << id << ", roll " << roll_rad << ", aside " << aside_rad;
+      }
+    }
+  }
+}
+
+/// From the frame of a board of 3x3 tags to that of the target, so that its tags lie on those from (row, col) on, turned by
+/// quarters about its middle.
+geometry::Rigid3 ontoLattice(int row, int col, int quarter_turns) {
+  const double pitch_m = (1.0 + kGrid.tag_spacing_ratio) * kGrid.tag_size_m;
+  const double middle_m = pitch_m + 0.5 * kGrid.tag_size_m;
+  const Eigen::Vector3d middle(middle_m, middle_m, 0.0);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(quarter_turns * 90.0 * kDegree, Eigen::Vector3d::UnitZ()));
+  return {turn, pitch_m * Eigen::Vector3d(col, row, 0.0) + middle - turn * middle};
+}
+
+TEST(CoveredCornersTest, CornersUnderTheSameCornersOfOtherTagsAreNotFound) {
+  struct View {
+    double distance_m;
+    double blur_px;
+  };
+  constexpr int kNumBoards = 12;
+  for (const View& view : {View{0.5, 0.7}, View{0.5, 1.5}, View{1.0, 0.7}, View{1.0, 1.5}}) {
+    BoardPose pose = kPose;
+    pose.distance_m = view.distance_m;
+    const geometry::Rigid3 T_cam_target = test_support::poseOf(kGrid, pose);
+    for (int k = 0; k < kNumBoards; ++k) {
+      const bool has_tags_of_the_target = k == kNumBoards - 1;  // in other places
+      target::AprilGrid second = kGrid;
+      second.tag_rows = second.tag_cols = 3;
+      second.code_offset = has_tags_of_the_target ? 0 : 40 * (k + 1);
+      const geometry::Rigid3 T_cam_second = T_cam_target * ontoLattice(k % 4, 1 + k / 4, k % 4);
+      BoardScene scene(fisheye());
+      const auto truth = scene.add(kGrid, pose);
+      scene.add(simulation::boardPattern(second, BoardScene::kMargin_m), second, T_cam_second);
+      const std::set<int> covered = coveredBy(second, T_cam_second, truth);
+      EXPECT_GE(covered.size(), 36U);
+      const cv::Mat image = scene.expose(view.blur_px, 2.0);
+      const auto corners = CornerRecovery(kGrid).recover(image, flatBoardMap(fisheye(), T_cam_target));
+      EXPECT_GE(static_cast<double>(corners.size()), 0.85 * static_cast<double>(truth.size() - covered.size()));
+      for (const int id : ids(corners)) {
+        EXPECT_EQ(covered.count(id), 0U) << "corner " << id << ", board " << k << ", " << view.distance_m << " m, blur "
+                                         << view.blur_px << " px";
       }
     }
   }

@@ -53,7 +53,11 @@ class BoardScene {
 
   std::vector<simulation::TrueCorner> add(const simulation::BoardPattern& pattern, const target::Target& target,
                                           const BoardPose& pose) {
-    const geometry::Rigid3 T_cam_target = poseOf(target, pose);
+    return add(pattern, target, poseOf(target, pose));
+  }
+
+  std::vector<simulation::TrueCorner> add(const simulation::BoardPattern& pattern, const target::Target& target,
+                                          const geometry::Rigid3& T_cam_target) {
     const simulation::BoardLayer board = simulation::drawBoard(pattern, camera_, T_cam_target);
     if (!board.window.empty()) {
       cv::Mat behind = grey_(board.window);

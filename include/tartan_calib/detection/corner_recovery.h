@@ -50,8 +50,8 @@ struct RecoveryOptions {
 /// Finds the corners of a board whose place in the image is roughly known. No straight edges and no decoded tag are needed:
 /// around each predicted corner the image must show an X-corner of the predicted orientation and polarity; shifts from the
 /// predictions must agree between neighbours; and the payload of the tag, sampled through the map, must agree with its id,
-/// or neighbours on tags that do must vouch for the corner. A covered corner is not reported. That is CornerFilter::kImage;
-/// kQuads is the filter of Duisterhof et al. 2022, for comparison.
+/// or, where it does not show another tag, neighbours on tags that agree must vouch for the corner. A covered corner is not
+/// reported. That is CornerFilter::kImage; kQuads is the filter of Duisterhof et al. 2022, for comparison.
 class CornerRecovery {
  public:
   explicit CornerRecovery(const target::Target& target, const RecoveryOptions& options = {});
