@@ -108,7 +108,7 @@ bool Patch::holds(const Eigen::Vector2d& px, double reach_px) const {
 double Patch::noiseGain(const Eigen::Vector2f& px) const {
   const Cell cell = cellOf(px);
   const auto along = [&](float fraction) {
-    const Eigen::Vector4f weights = spline(fraction).matrix();
+    const Eigen::Vector4f weights = splineWeights(fraction).matrix();
     const bool is_blurred = half_blur_.size() > 1;
     return static_cast<double>(is_blurred ? weights.dot(blur_correlation_ * weights) : weights.squaredNorm());
   };
@@ -120,8 +120,8 @@ Patch::PixelWeights::PixelWeights(const Patch& patch)
 
 void Patch::PixelWeights::add(const Eigen::Vector2f& px, const Eigen::Vector2f& factor) {
   const Cell cell = patch_.cellOf(px);
-  const Eigen::Array4f weight_x = spline(cell.fraction.x());
-  const Eigen::Array4f weight_y = spline(cell.fraction.y());
+  const Eigen::Array4f weight_x = splineWeights(cell.fraction.x());
+  const Eigen::Array4f weight_y = splineWeights(cell.fraction.y());
   int index = cell.index;
   for (int i = 0; i < kTaps; ++i, index += patch_.cols_) {
     const Eigen::Array4f weights = weight_y[i] * weight_x;

@@ -4,6 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "cubic_spline.h"
+
 namespace tartan_calib::detection {
 
 /// Grey values around a point, seen through the cubic B-spline as a low-pass (standard deviation 0.58 px): twice
@@ -22,9 +24,9 @@ class Patch {
 
   Sample at(const Eigen::Vector2f& px) const {
     const Cell cell = cellOf(px);
-    const Eigen::Array4f weight_x = spline(cell.fraction.x());
-    const Eigen::Array4f weight_y = spline(cell.fraction.y());
-    const Eigen::Array4f slope_y = splineSlope(cell.fraction.y());
+    const Eigen::Array4f weight_x = splineWeights(cell.fraction.x());
+    const Eigen::Array4f weight_y = splineWeights(cell.fraction.y());
+    const Eigen::Array4f slope_y = splineSlopes(cell.fraction.y());
     const float* line = values_.data() + cell.index;
     Eigen::Array4f value = Eigen::Array4f::Zero();
     Eigen::Array4f slope = Eigen::Array4f::Zero();
@@ -33,7 +35,7 @@ class Patch {
       value += weight_y[i] * pixels;
       slope += slope_y[i] * pixels;
     }
-    return {(weight_x * value).sum(), (splineSlope(cell.fraction.x()) * value).sum(), (weight_x * slope).sum()};
+    return {(weight_x * value).sum(), (splineSlopes(cell.fraction.x()) * value).sum(), (weight_x * slope).sum()};
   }
 
   /// True if `at` is possible for all points within `reach_px` of `px` along each axis.
@@ -73,22 +75,6 @@ class Patch {
     const int x = static_cast<int>(local.x());
     const int y = static_cast<int>(local.y());
     return {(y - 1) * cols_ + x - 1, local - Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y))};
-  }
-
-  /// Weights of the pixels at -1, 0, 1 and 2 for a sample at t in [0, 1).
-  static Eigen::Array4f spline(float t) {
-    const Eigen::Array4f c0(1.0F / 6.0F, 4.0F / 6.0F, 1.0F / 6.0F, 0.0F);
-    const Eigen::Array4f c1(-0.5F, 0.0F, 0.5F, 0.0F);
-    const Eigen::Array4f c2(0.5F, -1.0F, 0.5F, 0.0F);
-    const Eigen::Array4f c3(-1.0F / 6.0F, 0.5F, -0.5F, 1.0F / 6.0F);
-    return c0 + t * (c1 + t * (c2 + t * c3));
-  }
-
-  static Eigen::Array4f splineSlope(float t) {
-    const Eigen::Array4f c1(-0.5F, 0.0F, 0.5F, 0.0F);
-    const Eigen::Array4f c2(1.0F, -2.0F, 1.0F, 0.0F);
-    const Eigen::Array4f c3(-0.5F, 1.5F, -1.5F, 0.5F);
-    return c1 + t * (c2 + t * c3);
   }
 
   int cols_ = 0;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "light_slope.h"
 #include "patch.h"
 #include "symmetric_window.h"
 
@@ -26,10 +27,7 @@ constexpr double kAcceptedStep_px = 0.02;  ///< of the last iteration allowed
 constexpr double kFineStep_px = 0.05;      ///< longer steps look at a part of the samples only
 constexpr std::size_t kCoarseStride = 4;
 constexpr std::size_t kManyPairs = 64;
-constexpr double kReselectStep_px = 0.3;  ///< after such a move other samples lie inside of the image
-/// Linear change of light, relative, that is usual within a window; keeps the estimate still where the window is dark.
-constexpr double kLightSlopeSigmaPerPx = 0.01;
-constexpr double kGraySigmaFloor = 0.5;           ///< of the noise that the prior above is weighed against [grey levels]
+constexpr double kReselectStep_px = 0.3;          ///< after such a move other samples lie inside of the image
 constexpr double kRoundingVariance = 1.0 / 12.0;  ///< [grey levels^2]: pixels are integers
 constexpr int kNumUnknowns = 4;
 constexpr std::size_t kMinPairs = 8;  // twice the unknowns
@@ -73,9 +71,7 @@ NormalEquations linearize(const Patch& patch, const SampleSet& samples, const Ei
     squared_residuals += residual * residual;
   }
   normal.squared_residuals = static_cast<double>(squared_residuals);
-  const auto prior = static_cast<float>(std::pow(kGraySigmaFloor / kLightSlopeSigmaPerPx, 2.0));
-  normal.matrix(2, 2) += prior;
-  normal.matrix(3, 3) += prior;
+  normal.matrix.diagonal().tail<2>().array() += static_cast<float>(kLightSlopePrior);
   normal.solution = normal.matrix.cast<double>().ldlt().solve(normal.right.cast<double>());
   return normal;
 }

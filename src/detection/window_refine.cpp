@@ -6,6 +6,8 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "window_covariance.h"
+
 namespace tartan_calib::detection {
 namespace {
 
@@ -17,28 +19,10 @@ int roomInImage_px(const cv::Mat& gray, const Eigen::Vector2d& px) {
   return static_cast<int>(std::floor(to_border_px)) - 1;
 }
 
-/// inverse(A) * sum w^2 e^2 g g' * inverse(A), A = sum w g g', e = g . (q - p): White's covariance of a least-squares fit
-/// whose terms differ in noise.
-Eigen::Matrix2d covarianceOf(const cv::Mat& gray, const Eigen::Vector2d& px, int half_window_px) {
-  cv::Mat1f window;
-  const int size = 2 * half_window_px + 3;  // one more on each side for the gradient
-  cv::getRectSubPix(gray, {size, size}, cv::Point2f(static_cast<float>(px.x()), static_cast<float>(px.y())), window, CV_32F);
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-  for (int y = -half_window_px; y <= half_window_px; ++y) {
-    for (int x = -half_window_px; x <= half_window_px; ++x) {
-      const float* at = window[y + half_window_px + 1] + x + half_window_px + 1;
-      const float* above = window[y + half_window_px] + x + half_window_px + 1;
-      const float* below = window[y + half_window_px + 2] + x + half_window_px + 1;
-      const Eigen::Vector2d gradient(static_cast<double>(at[1] - at[-1]), static_cast<double>(*below - *above));
-      const double weight = std::exp(-static_cast<double>(x * x + y * y) / (half_window_px * half_window_px));
-      const double term = weight * gradient.dot(Eigen::Vector2d(x, y));
-      normal += weight * gradient * gradient.transpose();
-      scatter += term * term * gradient * gradient.transpose();
-    }
-  }
-  const Eigen::Matrix2d inverse = normal.inverse();
-  return inverse * scatter * inverse + 1e-8 * Eigen::Matrix2d::Identity();  // never singular
+/// What a covariance becomes with the knowledge that the corner is about `radius_px` around where it was looked for.
+Eigen::Matrix2d within(double radius_px, const Eigen::Matrix2d& cov_px2) {
+  const double radius_px2 = radius_px * radius_px;
+  return radius_px2 * cov_px2 * (cov_px2 + radius_px2 * Eigen::Matrix2d::Identity()).inverse();
 }
 
 /// Positions of lattice lines, and of one more at each end, as far away as the second gap: a tag grid's gaps alternate.
@@ -67,7 +51,7 @@ std::optional<RefinedCorner> refineInWindow(const cv::Mat& gray, const Eigen::Ve
   cv::cornerSubPix(gray, points, {half_window_px, half_window_px}, {-1, -1}, criteria);
   RefinedCorner corner;
   corner.px = Eigen::Vector2d(static_cast<double>(points[0].x), static_cast<double>(points[0].y));
-  corner.cov_px2 = covarianceOf(gray, corner.px, half_window_px);
+  corner.cov_px2 = within(options.max_shift_px, windowCovariance(gray, corner.px, half_window_px));
   const bool is_near = (corner.px - start_px).norm() <= options.max_shift_px;
   return is_near && corner.cov_px2.allFinite() ? std::make_optional(corner) : std::nullopt;
 }

@@ -20,7 +20,8 @@ struct WindowRefineOptions {
 };
 
 /// cv::cornerSubPix: the point p that minimises the sum over a square window of (g(q) . (q - p))^2, g the gradient at q.
-/// Near the border of the image the window is smaller. The covariance is the one that the terms' own size tells (White's).
+/// Near the border of the image the window is smaller. The covariance is that of the noise of the pixels, carried through
+/// the sum, and of what is left to go where the iteration ends.
 std::optional<RefinedCorner> refineInWindow(const cv::Mat& gray, const Eigen::Vector2d& start_px,
                                             const WindowRefineOptions& options);
 
