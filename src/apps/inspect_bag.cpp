@@ -1,8 +1,11 @@
+#include <unistd.h>
+
 #include <iostream>
 
 #include "common/command_line.h"
 #include "common/interrupt.h"
 #include "common/program.h"
+#include "common/progress_bar.h"
 #include "common/recording.h"
 #include "inspect_bag/report.h"
 
@@ -62,7 +65,14 @@ int run(int argc, char** argv) {
     target = openTarget(target_file, printWarning);
   }
   installInterruptHandler();
-  print(inspect(values["bag"].as<std::string>(), target), target_file);
+  ProgressBar bar(isatty(STDOUT_FILENO) != 0);
+  const Inspection inspection =
+      inspect(values["bag"].as<std::string>(), target, [&bar](std::size_t done, std::size_t total) {
+        bar.show(done, total);
+        setItemsDone(done, total, "images");
+      });
+  bar.clear();
+  print(inspection, target_file);
   return kSuccess;
 }
 

@@ -1,7 +1,11 @@
+#include <unistd.h>
+
 #include <iostream>
 
 #include "common/command_line.h"
+#include "common/interrupt.h"
 #include "common/program.h"
+#include "common/progress_bar.h"
 #include "make_bag/make_bag.h"
 
 namespace {
@@ -28,6 +32,23 @@ po::variables_map parse(int argc, char** argv) {
   return parseCommandLine(argc, argv, options);
 }
 
+BagContents write(const std::string& folder, const std::string& bag_path) {
+  ProgressBar bar(isatty(STDOUT_FILENO) != 0);
+  const UninterruptedSection all_or_nothing;
+  const auto tell = [&bar](const std::string& warning) {
+    bar.clear();
+    printWarning(warning);
+  };
+  const BagContents contents = makeBag(folder, bag_path, tell, [&bar](std::size_t done, std::size_t total) {
+    bar.show(done, total);
+    setItemsDone(done, total, "images");
+    throwIfInterrupted();
+  });
+  bar.clear();
+  setFinishedWork(bag_path + " is written");
+  return contents;
+}
+
 int run(int argc, char** argv) {
   const po::variables_map values = parse(argc, argv);
   if (const std::optional<int> exit_code = answerHelp(argc, values, kHelp)) {
@@ -38,7 +59,8 @@ int run(int argc, char** argv) {
     throw UsageError("--folder and --output-bag are needed; see --help");
   }
   const auto bag = values[bag_option].as<std::string>();
-  const BagContents contents = makeBag(values["folder"].as<std::string>(), bag, printWarning);
+  installInterruptHandler();
+  const BagContents contents = write(values["folder"].as<std::string>(), bag);
   std::cout << "Wrote " << contents.num_images << " images and " << contents.num_imu_samples << " IMU samples to " << bag
             << '\n';
   return kSuccess;

@@ -1,12 +1,29 @@
 #include "simulate/simulate.h"
 
+#include <unistd.h>
+
 #include <iostream>
 
+#include "common/interrupt.h"
 #include "common/program.h"
+#include "common/progress_bar.h"
 
 namespace {
 
 using namespace tartan_calib::apps;
+
+SimulateSummary render(const SimulateOptions& options) {
+  ProgressBar bar(isatty(STDOUT_FILENO) != 0);
+  const UninterruptedSection all_or_nothing;
+  const SimulateSummary summary = simulate(options, [&bar](std::size_t done, std::size_t total) {
+    bar.show(done, total);
+    setItemsDone(done, total, "views");
+    throwIfInterrupted();
+  });
+  bar.clear();
+  setFinishedWork(options.output_bag + options.output_dir + " and its truth are written");
+  return summary;
+}
 
 int run(int argc, char** argv) {
   if (argc == 1) {
@@ -18,7 +35,8 @@ int run(int argc, char** argv) {
     std::cout << simulateHelp();
     return kSuccess;
   }
-  const SimulateSummary summary = simulate(*options);
+  installInterruptHandler();
+  const SimulateSummary summary = render(*options);
   std::cout << "Rendered " << summary.num_images << " images with " << summary.num_visible_corners << " visible of "
             << summary.num_corners << " corners to " << options->output_bag << options->output_dir << '\n'
             << "Target: " << summary.base << "-target.yaml\n"

@@ -44,6 +44,7 @@ apps::SessionHooks hooksFor(const apps::TartanCommand& command) {
     const apps::UninterruptedSection files_are_written_whole;
     io::writeFile(prefix + "0-camchain.yaml", io::camchainText(io::camchain(result)));
     io::writeFile(prefix + "0-results-cam.txt", io::resultsText(result));
+    apps::setFinishedWork(prefix + "0-camchain.yaml and " + prefix + "0-results-cam.txt are written");
     for (std::size_t i = 0; i < result.cameras.size(); ++i) {
       std::printf("Started tartan calib with %d points.\n", numUsed(result, i));
     }
@@ -59,6 +60,7 @@ apps::SessionHooks hooksFor(const apps::TartanCommand& command) {
     const std::string& folder = command.debug_image_dir.empty() ? command.save_dir : command.debug_image_dir;
     std::printf("Writing the pictures of --debug-modes to %s\n", folder.c_str());
     std::fflush(stdout);
+    apps::setInterruptedStep("in the pictures of --debug-modes");
     apps::writeDebugPictures(inputs, result, command.debug_modes, folder);
   };
   return hooks;

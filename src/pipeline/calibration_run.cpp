@@ -167,17 +167,20 @@ calibration::Problem CalibrationRun::startRig() {
   return problem;
 }
 
-void CalibrationRun::solve(const calibration::Problem& problem) {
-  begin(Stage::kSolve);
+calibration::SolveOptions CalibrationRun::solveOptions() const {
   calibration::SolveOptions options = options_.solve;
   options.num_threads = options_.num_threads;
-  Progress progress{Stage::kSolve, -1, 0, 0};
-  options.progress = [this, &progress](const calibration::SolveProgress& /*iteration*/) {
+  options.progress = [this, progress = Progress{stage_.stage, -1, 0, 0}](const calibration::SolveProgress&) mutable {
     ++progress.done;
     report(listener_, progress);
     return !isCancelled(listener_);
   };
-  result_.solution = calibration::solve(problem, options);
+  return options;
+}
+
+void CalibrationRun::solve(const calibration::Problem& problem) {
+  begin(Stage::kSolve);
+  result_.solution = calibration::solve(problem, solveOptions());
   if (result_.solution.status == calibration::SolveStatus::kCancelled) {
     throw Cancelled("the calibration was stopped");
   }
@@ -250,10 +253,7 @@ CalibrationResult CalibrationRun::finish() {
   for (const std::string& warning : resultWarnings(result_)) {
     warn(warning);
   }
-  calibration::SolveOptions options = options_.solve;
-  options.num_threads = options_.num_threads;
-  options.progress = [this](const calibration::SolveProgress& /*iteration*/) { return !isCancelled(listener_); };
-  if (const std::optional<std::string> hint = pupilHint(result_.solution, options, target_points_)) {
+  if (const auto hint = pupilHint(result_.solution, solveOptions(), target_points_)) {
     warn(*hint);
   }
   end();

@@ -38,6 +38,7 @@ class CalibrationRun {
   void end();
   std::vector<observation::CameraView> usableImages(const CameraCorners& corners, int camera_index) const;
   calibration::Problem startRig();
+  calibration::SolveOptions solveOptions() const;  ///< of a solve that tells the stage's iterations and can be cancelled
   void solve(const calibration::Problem& problem);
   std::vector<CameraCorners> recoverAll(const std::vector<CameraStream>& streams);
   void describe(CalibrationResult& result) const;

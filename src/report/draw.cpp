@@ -16,6 +16,7 @@
 
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/atomic_file.h"
+#include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -87,7 +88,7 @@ void drawReport(const std::string& script, const std::string& folder, const std:
   const pid_t process = start({python(), "-B", script.c_str(), folder.c_str(), nullptr}, log);
   const int status = wait(process, is_cancelled);
   if (is_cancelled && is_cancelled()) {
-    return;
+    throw pipeline::Cancelled("the report was stopped");
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw InputError(lastLine(log));

@@ -4,7 +4,7 @@ import unittest
 
 import yaml
 
-from programs import Recordings, calibrate, interrupt_after, run
+from programs import Recordings, assert_stopped, calibrate, interrupt_after, interrupt_when, run, start
 
 TOPICS = ["/cam0/image_raw", "/cam1/image_raw"]
 MODELS = ["ds-none", "ds-none"]
@@ -22,6 +22,10 @@ class DetectCorners(unittest.TestCase):
 
     def detect(self, *flags, topics=TOPICS, bag=None, target=None):
         return run("detect_corners", "--bag", bag or self.bag, "--target", target or self.target, "--topics", *topics, *flags)
+
+    def start(self, output, *flags):
+        return start("detect_corners", "--bag", self.bag, "--target", self.target, "--topics", *TOPICS, "--output",
+                     self.recordings.path / output, *flags)
 
     def assert_refused(self, finished, code, *parts):
         self.assertEqual(finished.returncode, code, finished.stdout)
@@ -76,10 +80,17 @@ class DetectCorners(unittest.TestCase):
 
     def test_ctrl_c_ends_it_without_files(self):
         before = set(self.recordings.path.iterdir())
-        code, output = interrupt_after("Looking for the board", "detect_corners", "--bag", self.bag, "--target", self.target,
-                                       "--topics", *TOPICS, "--output", self.recordings.path / "stopped.csv")
-        self.assertEqual(code, 130, output)
+        stopped = interrupt_after("Looking for the board", self.start("stopped.csv"))
+        assert_stopped(self, stopped, "of 24 images of /cam0/image_raw; nothing was written")
         self.assertEqual(set(self.recordings.path.iterdir()), before)
+
+    def test_ctrl_c_while_it_draws_keeps_corners_and_whole_pictures(self):
+        folder = self.recordings.path / "some"
+        stopped = interrupt_when(lambda: len(list(folder.glob("*/*.png"))) > 2, self.start("kept.csv", "--pictures", folder))
+        corners = self.recordings.path / "kept.csv"
+        assert_stopped(self, stopped, f"of 24 pictures of cam0; {corners} and the pictures so far are written")
+        self.assertEqual({file.suffix for file in folder.glob("*/*")}, {".png"})
+        self.assertTrue(corners.exists())
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import shlex
 import unittest
 
-from programs import Recordings, run
+from programs import Recordings, assert_stopped, interrupt_when, run, shows_bar, start_on_terminal
 
 
 class InspectBag(unittest.TestCase):
@@ -36,6 +36,11 @@ class InspectBag(unittest.TestCase):
         finished = run("inspect_bag", self.bag, "--target", board)
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertIn("6 rows and 6 columns", finished.stdout)
+
+    def test_ctrl_c_ends_it(self):
+        process, terminal = start_on_terminal(self, "inspect_bag", self.bag, "--target", self.target)
+        stopped = interrupt_when(lambda: shows_bar(terminal), process)
+        assert_stopped(self, stopped, "of 48 images; nothing was written")
 
     def test_bad_input_is_one_line(self):
         text = self.recordings.path / "text.bag"

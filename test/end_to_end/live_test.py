@@ -3,12 +3,11 @@
 import filecmp
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import unittest
 
-from programs import DEVEL, PROGRAMS, SOURCE, TIMEOUT_S, Recordings, calibrate, free_port, run_in_workspace
+from programs import DEVEL, PROGRAMS, SOURCE, TIMEOUT_S, Recordings, assert_stopped, calibrate, free_port, interrupt_after, run_in_workspace
 
 
 class LiveNodes(unittest.TestCase):
@@ -65,13 +64,8 @@ class LiveNodes(unittest.TestCase):
         self.assertEqual(played.returncode, 0, played.stderr)
         answer = run_in_workspace("rosservice call --wait /coverage_node/calibrate", env=environment)
         self.assertIn("success: True", answer.stdout)
-        output = ""
-        for line in node.stdout:
-            output += line
-            if "wrote" in line:
-                node.send_signal(signal.SIGINT)
-        self.assertEqual(node.wait(timeout=TIMEOUT_S), 0, output)
-        self.assertIn("the calibration was stopped; its views are in", output)
+        stopped = interrupt_after("wrote", node)
+        assert_stopped(self, stopped, "the calibration was stopped; its views are in", returncode=0)
         self.assertEqual([file.name for file in self.folder.glob("stopped*")], ["stopped.bag"])
 
 

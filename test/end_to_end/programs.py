@@ -1,10 +1,12 @@
 """Runs the built programs as a user does; shared by the tests of this folder."""
 
 import os
+import select
 import signal
 import socket
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -30,16 +32,64 @@ def run_in_workspace(command, setup=DEVEL / "setup.bash", **options):
     return run_command("bash", "-c", f"source '{setup}' && {command}", **options)
 
 
-def interrupt_after(line, program, *arguments):
-    """Starts a program, sends it Ctrl-C once it printed `line`, and returns (exit code, whole output)."""
+def start(program, *arguments, **options):
+    """A running program of the package; its standard error comes with its output."""
     words = [str(word) for word in (PROGRAMS / program, *arguments)]
-    with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-        output = ""
-        for text in process.stdout:
-            output += text
-            if line in text:
-                process.send_signal(signal.SIGINT)
-        return process.wait(timeout=TIMEOUT_S), output
+    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+
+
+def start_on_terminal(test, program, *arguments):
+    """The same with a terminal for its output, of which the other end comes with it; its standard error is a pipe."""
+    terminal, its_end = os.openpty()
+    test.addCleanup(os.close, terminal)
+    words = [str(word) for word in (PROGRAMS / program, *arguments)]
+    process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=its_end, stderr=subprocess.PIPE, text=True)
+    os.close(its_end)
+    return process, terminal
+
+
+def shows_bar(terminal):
+    """Whether the program has drawn its bar since the last call."""
+    return select.select([terminal], [], [], 0)[0] and b"Time remaining" in os.read(terminal, 4096)
+
+
+class Interrupted:
+    """What a process did that got Ctrl-C: its exit code, whole output, and how long it took to end."""
+
+    def __init__(self, process, output_before=""):
+        sent_s = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        with process.stdout or process.stderr as pipe:
+            self.output = output_before + pipe.read()
+        self.returncode = process.wait(timeout=TIMEOUT_S)
+        self.seconds = time.monotonic() - sent_s
+
+
+def interrupt_after(line, process):
+    """Sends Ctrl-C to a process once it printed `line`."""
+    output = ""
+    while line not in output:
+        text = process.stdout.readline()
+        assert text, f"it ended without '{line}':\n{output}"
+        output += text
+    return Interrupted(process, output)
+
+
+def interrupt_when(is_time, process):
+    """Sends Ctrl-C to a process once `is_time()`."""
+    while not is_time():
+        assert process.poll() is None, f"it ended too early:\n{process.communicate()}"
+    return Interrupted(process)
+
+
+def assert_stopped(test, interrupted, finished, returncode=130):
+    """It ended within a second, with that exit code and a line that says `finished`."""
+    test.assertEqual(interrupted.returncode, returncode, interrupted.output)
+    test.assertLess(interrupted.seconds, 1.0, interrupted.output)
+    lines = [line for line in interrupted.output.splitlines() if "[ WARN]" in line]
+    test.assertTrue(any(finished in line for line in lines), interrupted.output)
+    if returncode != 0:
+        test.assertIn("Shutdown requested! (CTRL+C)", interrupted.output)
 
 
 def free_port():

@@ -3,12 +3,10 @@
 import os
 import re
 import shutil
-import signal
-import subprocess
 import unittest
 from pathlib import Path
 
-from programs import PROGRAMS, Recordings, calibrate, run_command
+from programs import PROGRAMS, Recordings, assert_stopped, calibrate, interrupt_after, run_command, start
 
 MODELS = ["ds-none", "ds-none"]
 KALIBR_PAGES = ["Inter-camera observations graph", "camera system", "cam0: estimated poses", "cam0: polar error",
@@ -143,18 +141,11 @@ class ReportThatCannotBeDrawn(unittest.TestCase):
     def test_ctrl_c_while_it_is_drawn_keeps_the_result_and_leaves_nothing(self):
         scratch = self.recordings.path / "scratch"
         scratch.mkdir()
-        words = [PROGRAMS / "calibrate_cameras", "--bag", self.bag, "--target", self.recordings.target("one"), "--topics",
-                 "/cam0/image_raw", "--models", "ds-none"]
-        with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, text=True,
-                              env={**os.environ, "TMPDIR": str(scratch)}) as process:
-            output = ""
-            for line in process.stdout:
-                output += line
-                if "Generating result report" in line:
-                    process.send_signal(signal.SIGINT)
-            code = process.wait()
-        self.assertEqual(code, 130)
-        self.assertIn("the results above are written and complete", output)
+        words = ["calibrate_cameras", "--bag", self.bag, "--target", self.recordings.target("one"), "--topics", "/cam0/image_raw",
+                 "--models", "ds-none"]
+        process = start(*words, env={**os.environ, "TMPDIR": str(scratch)})
+        stopped = interrupt_after("Generating result report", process)
+        assert_stopped(self, stopped, "stopped before the report was drawn; the results above are written and complete")
         self.assertTrue((self.recordings.path / "one-camchain.yaml").exists())
         self.assertEqual(self.reports() + list(Path(scratch).iterdir()), [])
 

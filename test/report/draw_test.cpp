@@ -8,6 +8,7 @@
 
 #include "support/temporary_folder.h"
 #include "tartan_calib/error.h"
+#include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -57,7 +58,9 @@ TEST_F(DrawTest, KeepsAnOlderReportWhereTheScriptFails) {
 
 TEST_F(DrawTest, EndsTheScriptAndItsChildrenWhenCancelled) {
   const auto begin = std::chrono::steady_clock::now();
-  draw("import subprocess, sys, time\nsubprocess.Popen(['sleep', '60'])\ntime.sleep(60)\n", [] { return true; });
+  EXPECT_THROW(
+      draw("import subprocess, sys, time\nsubprocess.Popen(['sleep', '60'])\ntime.sleep(60)\n", [] { return true; }),
+      pipeline::Cancelled);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
   EXPECT_FALSE(fs::exists(pdf));
 }

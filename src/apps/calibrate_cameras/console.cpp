@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <string>
 
+#include "common/interrupt.h"
 #include "common/program.h"
 #include "tartan_calib/io/results_text.h"
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -78,15 +80,25 @@ void Console::printCameraHeader(int camera_index, std::size_t num_images) {
   std::printf("\tNumber of images: %zu\n", num_images);
 }
 
-void Console::onProgress(const pipeline::Progress& progress) {
+/// Round 0 is the detection; the search for more corners begins the next round.
+void Console::noteStep(const pipeline::Progress& progress) {
   if (progress.stage == pipeline::Stage::kRecover) {
-    bar_.show(progress.done, progress.total);
-    return;
+    round_ = num_rounds_finished_ + 1;
   }
-  if (progress.stage != pipeline::Stage::kDetect) {
+  const std::string camera = progress.camera_index < 0 ? "" : " " + cameraName(progress.camera_index);
+  setInterruptedStep("in round " + std::to_string(round_) + " (" + pipeline::stageName(progress.stage) + camera + ")");
+}
+
+void Console::onProgress(const pipeline::Progress& progress) {
+  noteStep(progress);
+  if (progress.total == 0) {
+    bar_.showElapsed(pipeline::stageName(progress.stage) + ", iteration " + std::to_string(progress.done));
     return;
   }
   if (progress.done == 0) {
+    bar_.clear();
+  }
+  if (progress.stage == pipeline::Stage::kDetect && progress.done == 0) {
     printCameraHeader(progress.camera_index, progress.total);
     std::printf("Extracting calibration target corners\n");
     std::fflush(stdout);
@@ -131,6 +143,7 @@ void Console::onRigStarted(const calibration::Problem& problem) {
 }
 
 void Console::onRoundFinished(const pipeline::RoundSummary& round) {
+  num_rounds_finished_ = round.round;
   bar_.clear();
   std::printf("round %d: %d corners, %d gained, %d lost, rms %.4f px, model moved %.4f px\n", round.round, round.corners,
               round.gained, round.lost, round.rms_px, round.model_change_px);
@@ -182,12 +195,6 @@ void Console::printReport(const ReportFiles& report) {
     std::printf("  %s: %s\n", report::gradeName(reason.grade).c_str(), reason.text.c_str());
   }
   std::fflush(stdout);
-}
-
-void Console::printWithoutReport() {
-  bar_.clear();
-  printWarning("stopped before the report was drawn; the results above are written and complete");
-  std::fflush(stdout);  // the program ends without
 }
 
 void Console::printTimes(const pipeline::CalibrationResult& result) {

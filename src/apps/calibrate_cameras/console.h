@@ -23,10 +23,10 @@ class Console {
   void startDrawing() { bar_.show(0, 0); }
   void showDrawing() { bar_.showElapsed("Drawing the report"); }
   void printReport(const ReportFiles& report);
-  void printWithoutReport();
   void printTimes(const pipeline::CalibrationResult& result);
 
  private:
+  void noteStep(const pipeline::Progress& progress);
   void onProgress(const pipeline::Progress& progress);
   void onDetected(int camera_index, const pipeline::CameraCorners& corners);
   void onStarted(const camera::Camera& camera);
@@ -36,6 +36,8 @@ class Console {
 
   const Inputs& inputs_;
   ProgressBar bar_;
+  int round_ = 0;
+  int num_rounds_finished_ = 0;
 };
 
 }  // namespace tartan_calib::apps

@@ -17,12 +17,14 @@ void reportOn(const pipeline::CalibrationResult& result, const Inputs& inputs, c
   std::printf("Generating result report...\n");
   std::fflush(stdout);
   console.startDrawing();
+  setInterruptedStep("before the report was drawn");
   const ReportFiles files =
       writeReport(result, inputs, outputPrefix(arguments), isInterruptWaiting, [&console] { console.showDrawing(); });
-  if (isInterruptWaiting()) {
-    console.printWithoutReport();
+  if (files.html.empty() && isInterruptWaiting()) {
     return;
   }
+  setInterruptedStep("");
+  setFinishedWork("results and report are written");
   console.printReport(files);
   if (arguments.show_report) {
     showReport(files);
@@ -72,6 +74,7 @@ void runSession(const Arguments& arguments, const std::string& command, const Se
   {
     const UninterruptedSection files_are_written_whole;
     console.printFiles(writeOutputs(result, arguments, inputs.options, command));
+    setFinishedWork("the results above are written and complete");
   }
   if (hooks.finished) {
     hooks.finished(inputs, result);

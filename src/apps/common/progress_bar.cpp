@@ -30,7 +30,8 @@ std::string durationText(double seconds) {
 
 bool ProgressBar::isDue(std::size_t done, std::size_t total) const {
   const Clock::duration since = Clock::now() - drawn_at_;
-  return is_terminal_ ? since >= kRedrawInterval : since >= kLineInterval && (done - drawn_done_) * kLinesPerRun >= total;
+  return is_terminal_ ? since >= kRedrawInterval
+                      : since >= kLineInterval && done > drawn_done_ && (done - drawn_done_) * kLinesPerRun >= total;
 }
 
 void ProgressBar::show(std::size_t done, std::size_t total) {
@@ -52,14 +53,14 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
   drawn_done_ = done;
 }
 
-void ProgressBar::showElapsed(const char* what) {
+void ProgressBar::showElapsed(const std::string& what) {
   constexpr std::chrono::seconds kStep{1};
   const Clock::time_point now = Clock::now();
   if (!is_terminal_ || now - begin_ < kLongStep || (is_drawn_ && now - drawn_at_ < kStep)) {
     return;
   }
   const std::chrono::duration<double> taken = now - begin_;
-  std::printf("\r  %s: %s   ", what, durationText(taken.count()).c_str());
+  std::printf("\r  %s: %s   ", what.c_str(), durationText(taken.count()).c_str());
   std::fflush(stdout);
   is_drawn_ = true;
   drawn_at_ = now;

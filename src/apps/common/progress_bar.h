@@ -2,9 +2,13 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace tartan_calib::apps {
+
+/// Told by work of several items how many are done; first that none is.
+using ProgressCall = std::function<void(std::size_t done, std::size_t total)>;
 
 /// `45s`, `3m 05s`, `1h 02m`.
 std::string durationText(double seconds);
@@ -19,7 +23,7 @@ class ProgressBar {
 
   /// On a terminal, for work whose end is not known: what is done and for how long, once that is more than 2 seconds. Begins
   /// with show(0, 0).
-  void showElapsed(const char* what);
+  void showElapsed(const std::string& what);
 
   /// Takes the bar off the terminal.
   void clear();

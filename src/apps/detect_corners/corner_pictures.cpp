@@ -107,7 +107,7 @@ std::vector<std::size_t> evenlyChosen(std::size_t total, std::size_t count) {
 
 std::size_t writeCornerPictures(const pipeline::CameraStream& stream, const std::vector<observation::CameraView>& images,
                                 const target::Target& target, const std::string& folder, std::size_t max_pictures,
-                                const std::function<void(std::size_t done, std::size_t total)>& progress) {
+                                const ProgressCall& progress) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
@@ -126,7 +126,6 @@ std::size_t writeCornerPictures(const pipeline::CameraStream& stream, const std:
     if (index != chosen[done]) {
       continue;
     }
-    progress(++done, chosen.size());
     if (const std::optional<cv::Mat> gray = loaded(*image)) {
       const auto seen = std::find_if(images.begin(), images.end(),
                                      [&](const observation::CameraView& view) { return view.stamp_ns == image->stamp_ns; });
@@ -134,6 +133,7 @@ std::size_t writeCornerPictures(const pipeline::CameraStream& stream, const std:
       savePng((fs::path(folder) / (std::to_string(image->stamp_ns) + ".png")).string(), drawCorners(*gray, corners, target));
       ++num_drawn;
     }
+    progress(++done, chosen.size());
   }
   return num_drawn;
 }

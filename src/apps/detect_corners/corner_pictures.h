@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "common/progress_bar.h"
 #include "tartan_calib/observation/observation.h"
 #include "tartan_calib/pipeline/camera_stream.h"
 #include "tartan_calib/target/target.h"
@@ -22,6 +22,6 @@ std::vector<std::size_t> evenlyChosen(std::size_t total, std::size_t count);
 /// that cannot be read are left out.
 std::size_t writeCornerPictures(const pipeline::CameraStream& stream, const std::vector<observation::CameraView>& images,
                                 const target::Target& target, const std::string& folder, std::size_t max_pictures,
-                                const std::function<void(std::size_t done, std::size_t total)>& progress);
+                                const ProgressCall& progress);
 
 }  // namespace tartan_calib::apps

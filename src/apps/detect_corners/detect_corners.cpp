@@ -62,9 +62,11 @@ void drawAll(const std::vector<pipeline::CameraStream>& streams, const std::vect
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const std::size_t share = max_pictures * (i + 1) / streams.size() - max_pictures * i / streams.size();
     const std::string folder = (std::filesystem::path(options.picture_folder) / cameraName(i)).string();
-    const std::size_t num_drawn =
-        writeCornerPictures(streams[i], cameras[i].images, target, folder, share,
-                            [&bar](std::size_t done, std::size_t total) { bar.show(done, total); });
+    const std::size_t num_drawn = writeCornerPictures(streams[i], cameras[i].images, target, folder, share,
+                                                      [&bar, i](std::size_t done, std::size_t total) {
+                                                        bar.show(done, total);
+                                                        setItemsDone(done, total, "pictures of " + cameraName(i));
+                                                      });
     bar.clear();
     std::printf("%zu pictures written to %s\n", num_drawn, folder.c_str());
   }
@@ -104,6 +106,7 @@ void detectCorners(const DetectOptions& options) {
   {
     const UninterruptedSection file_is_written_whole;
     io::saveCorners(options.output, cameras);
+    setFinishedWork(options.output + (options.picture_folder.empty() ? " is" : " and the pictures so far are") + " written");
   }
   std::printf("Corners written to %s\n", options.output.c_str());
   if (!options.picture_folder.empty()) {

@@ -49,13 +49,45 @@ void addSample(const cv::Mat& gray, std::int64_t stamp_ns, const detection::Targ
   }
 }
 
-void lookAtSamples(const ros::ImageTopic& topic, const detection::TargetDetector* detector, CameraInspection& camera) {
+/// Indices of the images that are decoded.
+std::vector<std::size_t> samplesOf(const ros::ImageTopic& topic) {
   std::vector<std::int64_t> received_ns;
   for (const ros::ImageRecord& image : topic.images) {
     received_ns.push_back(image.received_ns);
   }
+  return topic.is_supported ? evenlyInTime(received_ns, kMaxSamples) : std::vector<std::size_t>();
+}
+
+/// Counts the samples of all topics.
+class SampleCounter {
+ public:
+  SampleCounter(const std::vector<ros::ImageTopic>& topics, const ProgressCall& progress) : progress_(progress) {
+    for (const ros::ImageTopic& topic : topics) {
+      total_ += samplesOf(topic).size();
+    }
+    tell();
+  }
+  void count() {
+    ++done_;
+    tell();
+  }
+
+ private:
+  void tell() const {
+    if (progress_) {
+      progress_(done_, total_);
+    }
+  }
+
+  const ProgressCall& progress_;
+  std::size_t done_ = 0;
+  std::size_t total_ = 0;
+};
+
+void lookAtSamples(const ros::ImageTopic& topic, const detection::TargetDetector* detector, SampleCounter& counter,
+                   CameraInspection& camera) {
   const bool has_sizes = !camera.sizes.empty();
-  for (const std::size_t index : evenlyInTime(received_ns, kMaxSamples)) {
+  for (const std::size_t index : samplesOf(topic)) {
     try {
       const cv::Mat gray = topic.load(index);
       if (!has_sizes) {
@@ -67,6 +99,7 @@ void lookAtSamples(const ros::ImageTopic& topic, const detection::TargetDetector
     } catch (const InputError& error) {
       camera.unreadable_reason = camera.num_unreadable++ == 0 ? error.what() : camera.unreadable_reason;
     }
+    counter.count();
   }
 }
 
@@ -87,7 +120,8 @@ std::string reasonAgainst(const CameraInspection& camera, bool has_target) {
   return looksLikeDepth(camera.topic) ? "its name says depth" : "";
 }
 
-CameraInspection inspectCamera(const ros::ImageTopic& topic, const detection::TargetDetector* detector) {
+CameraInspection inspectCamera(const ros::ImageTopic& topic, const detection::TargetDetector* detector,
+                               SampleCounter& counter) {
   CameraInspection camera;
   camera.topic = topic.topic;
   camera.type = topic.type;
@@ -106,9 +140,7 @@ CameraInspection inspectCamera(const ros::ImageTopic& topic, const detection::Ta
   if (!topic.images.empty()) {
     camera.timing = timingOf(topic.images);
   }
-  if (topic.is_supported) {
-    lookAtSamples(topic, detector, camera);
-  }
+  lookAtSamples(topic, detector, counter, camera);
   camera.left_out = reasonAgainst(camera, detector != nullptr);
   return camera;
 }
@@ -142,7 +174,7 @@ void compareTimes(const ros::BagContents& contents, Inspection& inspection) {
 
 }  // namespace
 
-Inspection inspect(const std::string& recording, const std::optional<target::Target>& target) {
+Inspection inspect(const std::string& recording, const std::optional<target::Target>& target, const ProgressCall& progress) {
   const ros::BagContents contents =
       std::filesystem::is_directory(recording) ? listFolder(recording) : ros::listBag(recording);
   if (contents.image_topics.empty()) {
@@ -157,8 +189,9 @@ Inspection inspect(const std::string& recording, const std::optional<target::Tar
   inspection.target = target;
   inspection.other_topics = contents.other_topics;
   const auto detector = target ? std::make_unique<detection::TargetDetector>(*target) : nullptr;
+  SampleCounter counter(contents.image_topics, progress);
   for (const ros::ImageTopic& topic : contents.image_topics) {
-    inspection.cameras.push_back(inspectCamera(topic, detector.get()));
+    inspection.cameras.push_back(inspectCamera(topic, detector.get(), counter));
   }
   leaveOutCopies(inspection.cameras);
   compareTimes(contents, inspection);

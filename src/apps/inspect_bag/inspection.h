@@ -1,12 +1,12 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/progress_bar.h"
 #include "inspect_bag/image_quality.h"
 #include "inspect_bag/timing.h"
 #include "tartan_calib/pipeline/calibrate.h"
@@ -47,8 +47,10 @@ struct Inspection {
   std::vector<ros::OtherTopic> other_topics;
 };
 
-/// A bag, or a folder in kalibr_bagcreater's layout. Throws InputError where it cannot be read or has no images.
-Inspection inspect(const std::string& recording, const std::optional<target::Target>& target);
+/// A bag, or a folder in kalibr_bagcreater's layout. `progress` is told of the images that are decoded. Throws InputError
+/// where it cannot be read or has no images.
+Inspection inspect(const std::string& recording, const std::optional<target::Target>& target,
+                   const ProgressCall& progress = {});
 
 /// `width x height` of most images; zeros where nothing is known.
 ImageSize usualSize(const CameraInspection& camera);

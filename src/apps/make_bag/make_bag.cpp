@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -48,13 +49,18 @@ std::vector<ImuMessage> loadImuMessages(const std::string& folder) {
   return messages;
 }
 
-std::vector<ImageTrack> openTracks(const std::string& folder, const io::RecordingOptions& options) {
+std::vector<ImageTrack> openTracks(const std::vector<pipeline::CameraStream>& streams) {
   std::vector<ImageTrack> tracks;
-  for (const pipeline::CameraStream& stream : io::openImageFolder(folder, io::imageFolderTopics(folder), options)) {
+  for (const pipeline::CameraStream& stream : streams) {
     tracks.push_back({stream.topic, stream.open(), std::nullopt});
     tracks.back().next = tracks.back().source();
   }
   return tracks;
+}
+
+std::size_t numImages(const std::vector<pipeline::CameraStream>& streams) {
+  return std::accumulate(streams.begin(), streams.end(), std::size_t{0},
+                         [](std::size_t sum, const pipeline::CameraStream& stream) { return sum + stream.num_images; });
 }
 
 /// The track with the earliest image; null where all are at their end.
@@ -81,19 +87,26 @@ cv::Mat loadOrTell(const pipeline::StampedImage& image, const io::RecordingOptio
 }  // namespace
 
 BagContents makeBag(const std::string& folder, const std::string& bag_path,
-                    const std::function<void(const std::string&)>& notice) {
+                    const std::function<void(const std::string&)>& notice, const ProgressCall& progress) {
   io::RecordingOptions options;
   options.notice = notice;
-  std::vector<ImageTrack> tracks = openTracks(folder, options);
+  const auto streams = io::openImageFolder(folder, io::imageFolderTopics(folder), options);
+  std::vector<ImageTrack> tracks = openTracks(streams);
   const std::vector<ImuMessage> imu = loadImuMessages(folder);
   ros::BagWriter writer(bag_path);
   BagContents contents;
+  const auto tell = [&, total = numImages(streams)] {
+    if (progress) {
+      progress(contents.num_images + contents.num_skipped_images, total);
+    }
+  };
   const auto write_imu_until = [&](std::int64_t stamp_ns) {
     while (contents.num_imu_samples < imu.size() && imu[contents.num_imu_samples].sample.stamp_ns <= stamp_ns) {
       const ImuMessage& message = imu[contents.num_imu_samples++];
       writer.writeImu(message.topic, message.sample);
     }
   };
+  tell();
   while (ImageTrack* track = earliest(tracks)) {
     write_imu_until(track->next->stamp_ns);
     const cv::Mat gray = loadOrTell(*track->next, options);
@@ -104,6 +117,7 @@ BagContents makeBag(const std::string& folder, const std::string& bag_path,
       ++contents.num_images;
     }
     track->next = track->source();
+    tell();
   }
   write_imu_until(std::numeric_limits<std::int64_t>::max());
   if (contents.num_images == 0) {

@@ -76,17 +76,27 @@ simulation::Scene makeScene(const SimulateOptions& options) {
   return simulation::makeRecording(recording);
 }
 
-SimulateSummary simulate(const SimulateOptions& options) {
+SimulateSummary simulate(const SimulateOptions& options, const ProgressCall& progress) {
   const simulation::Renderer renderer(makeScene(options));
   const std::unique_ptr<RecordingWriter> writer =
       options.output_bag.empty() ? makeFolderWriter(options.output_dir) : makeBagWriter(options.output_bag);
   Truth truth(renderer.scene());
   SimulateSummary summary;
+  const std::size_t num_frames = renderer.scene().frames.size();
+  std::size_t num_rendered = 0;
+  const auto tell = [&] {
+    if (progress) {
+      progress(num_rendered, num_frames);
+    }
+  };
+  tell();
   cv::setNumThreads(1);  // threads work on frames
   simulation::renderAll(renderer, numThreads(options.num_threads), [&](const simulation::RenderedFrame& frame) {
     writer->write(frame);
     truth.add(frame);
     summary.num_images += frame.views.size();
+    ++num_rendered;
+    tell();
   });
   summary.base = truthBase(options);
   summary.num_corners = truth.numCorners();

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "common/progress_bar.h"
 #include "simulate/simulate_options.h"
 #include "tartan_calib/simulation/scene.h"
 
@@ -18,7 +19,8 @@ struct SimulateSummary {
 /// The scene that the options describe. Throws InputError.
 simulation::Scene makeScene(const SimulateOptions& options);
 
-/// Renders it and writes recording and truth; the recording appears last, when everything else is there.
-SimulateSummary simulate(const SimulateOptions& options);
+/// Renders it and writes recording and truth; the recording appears last, when everything else is there. Where `progress`,
+/// told after every view, throws, nothing is left behind.
+SimulateSummary simulate(const SimulateOptions& options, const ProgressCall& progress = {});
 
 }  // namespace tartan_calib::apps

@@ -70,6 +70,7 @@ void writeOutputs(const ValidateOptions& options, const Validation& validation) 
     const std::string text = errorsCsv(validation);
     const UninterruptedSection file_is_written_whole;
     io::writeFile(options.errors_file, text);
+    setFinishedWork(options.errors_file + " is written");
     std::printf("Errors written to %s\n", options.errors_file.c_str());
   }
   if (!options.picture_file.empty()) {
@@ -86,8 +87,11 @@ void validateCalibration(const ValidateOptions& options) {
   const target::Target target = openTarget(options.target_file, printWarning);
   ProgressBar bar(isatty(STDOUT_FILENO) != 0);
   const std::vector<pipeline::CameraCorners> corners = cornersOf(options, chain, target, bar);
-  Validation validation = validate(chain.rig, target, corners, options.approx_sync_ns,
-                                   [&bar](std::size_t done, std::size_t total) { bar.show(done, total); });
+  Validation validation =
+      validate(chain.rig, target, corners, options.approx_sync_ns, [&bar](std::size_t done, std::size_t total) {
+        bar.show(done, total);
+        setItemsDone(done, total, "views");
+      });
   bar.clear();
   setExpected(options, validation);
   std::printf("%s", validationText(validation).c_str());

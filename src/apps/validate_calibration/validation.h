@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/progress_bar.h"
 #include "tartan_calib/calibration/rig.h"
 #include "tartan_calib/calibration/validate.h"
 #include "tartan_calib/pipeline/calibrate.h"
@@ -28,8 +28,6 @@ struct Validation {
   std::size_t num_unexplained = 0;  ///< of these, without a pose
   std::size_t num_joint = 0;        ///< of these, seen by several cameras: they check extrinsics
 };
-
-using ProgressCall = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Throws InputError where corners do not belong to the rig's cameras or the board, CalibrationError where no view can be
 /// checked.
