@@ -1,17 +1,18 @@
 """Distance of refined corners to the truth: Table III of the TartanCalib paper, which could only compare with clicks."""
 
 import dataclasses
+import re
 
 import numpy as np
 
-from benchmarks.common import WORK, calibrate, read_corners, table
+from benchmarks.common import WORK, Failed, calibrate, read_corners, run, table, test_program
 from benchmarks.detectors import RECORDINGS
 from benchmarks.limits import is_blurred
 from benchmarks.truth import BAND_DEG, MAX_ERROR_PX, Truth, bands
 
 # Round 1 through the true lens, so that every method has the same predictions.
-METHODS = [("fixed", "fixed", ["--refinement", "fixed"]),
-           ("adaptive", "adaptive", ["--refinement", "adaptive"]),
+METHODS = [("fixed (Kalibr)", "fixed", ["--refinement", "fixed"]),
+           ("adaptive (TartanCalib)", "adaptive", ["--refinement", "adaptive"]),
            ("symmetry, paper's window", "wide", ["--symmetry-window", "1.5"]),
            ("symmetry", "symmetry", [])]
 WINDOWS = ["0.6", "0.75", "0.9", "1.0"]
@@ -56,7 +57,31 @@ def figures(errors, bound_px, chosen):
             f"{np.sqrt(np.mean(spread[spread < 4] ** 2)):.2f}"]
 
 
-COLUMNS = ["median [px]", "rms [px]", "missed or > 2 px off", "median error / bound", "normalised residuals, stdev"]
+COLUMNS = ["median [px]", "rms [px]", "missed or > 2 px off", "median error / bound", "stdev of normalised errors"]
+
+
+def by_polar_angle(recording, truth, found):
+    """One row for each method and figure, one column for each band."""
+    polar_deg = truth.polar_deg[truth.asked]
+    bound_px = truth.bound_px[truth.asked]
+    ranges = bands(recording.edge_deg)
+    rows = []
+    for label, errors in found.items():
+        columns = [figures(errors, bound_px, (polar_deg >= start) & (polar_deg < end)) for start, end in ranges]
+        rows += [[label, name, *(value.split(" of ")[0] for value in values)] for name, values in zip(COLUMNS, zip(*columns))]
+    table(["refinement", f"by {BAND_DEG} degrees of polar angle", *(f"{start}-{end}" for start, end in ranges)], rows)
+
+
+def times(recording):
+    """Processor time that each method needs for a corner, on one thread, around the corners that symmetry found."""
+    program = test_program("time_refinement")
+    if program is None:
+        raise Failed("time_refinement is not built: run scripts/build tests first")
+    bag, target, lens = recording.files
+    text, _ = run(program, bag, WORK / f"{recording.name}-refined-symmetry-corners.csv", target, lens)
+    found = re.findall(r"^(\w+) (\d+) corners ([0-9.]+) us$", text, re.MULTILINE)
+    table(["refinement", "corners", "processor time of a corner [us], asked <= 60"],
+          [[method, count, f"{float(time_us):.0f}"] for method, count, time_us in found])
 
 
 def refinement(_):
@@ -65,20 +90,17 @@ def refinement(_):
     truth = Truth(recording)
     blurred = is_blurred(truth)[truth.asked]
     bound_px = truth.bound_px[truth.asked]
-    polar_deg = truth.polar_deg[truth.asked]
-    everything = np.ones(len(bound_px), bool)
-    parts = [("all", everything), ("sharp", ~blurred), ("blurred", blurred)]
-    parts += [(f"{start}-{end} degrees", (polar_deg >= start) & (polar_deg < end)) for start, end in bands(recording.edge_deg)]
+    parts = [("all", np.ones(len(bound_px), bool)), ("sharp", ~blurred), ("blurred by motion", blurred)]
     print(f"{recording.title}. Bound: sqrt(trace) of each corner's Cramer-Rao bound; the best estimate has the median 0.83.\n")
-    rows = []
-    for label, key, flags in METHODS:
-        errors = refined(recording, truth, key, *flags)
-        rows += [[label, part, *figures(errors, bound_px, chosen)] for part, chosen in parts]
-    table(["refinement", f"corners, by {BAND_DEG} degrees of polar angle", *COLUMNS], rows)
+    found = {label: refined(recording, truth, key, *flags) for label, key, flags in METHODS}
+    table(["refinement", "corners", *COLUMNS],
+          [[label, part, *figures(errors, bound_px, chosen)] for label, errors in found.items() for part, chosen in parts])
+    by_polar_angle(recording, truth, found)
+    times(recording)
     rows = []
     for window in WINDOWS:
         errors = refined(recording, truth, f"window-{window}", "--symmetry-window", window)
-        rows += [[window, part, *figures(errors, bound_px, chosen)] for part, chosen in parts[:3]]
+        rows += [[window, part, *figures(errors, bound_px, chosen)] for part, chosen in parts]
     table(["half-width of symmetry's window", "corners", *COLUMNS], rows)
 
 

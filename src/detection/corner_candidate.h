@@ -15,12 +15,6 @@ struct CornerSearch {
   double min_correlation = 0.0;
 };
 
-/// Where the refinement of a corner begins.
-struct CornerSeed {
-  int corner_id = -1;
-  Eigen::Vector2d px = Eigen::Vector2d::Zero();
-};
-
 /// A corner of the board that should be in the image, and what was found there.
 struct CornerCandidate {
   int corner_id = -1;

@@ -116,7 +116,7 @@ std::vector<CornerCandidate> CornerRecovery::recoverOnQuads(const cv::Mat& gray,
   for (const auto& [corner_id, px] : matchQuads(findQuads(gray), grid, predicted_px, options_.max_quad_distance_px)) {
     CornerCandidate candidate;
     candidate.corner_id = corner_id;
-    candidate.refined = refineAt(gray, map, {corner_id, px});
+    candidate.refined = refine(gray, map, {corner_id, px});
     candidates.push_back(candidate);
   }
   return candidates;
@@ -172,15 +172,14 @@ void CornerRecovery::findWithin(const cv::Mat& gray, const BoardMap& map, const 
   if (!match || match->correlation < search.min_correlation || match->contrast < options_.min_contrast) {
     return;
   }
-  const auto refined = refineAt(gray, map, {candidate.corner_id, match->px});
+  const auto refined = refine(gray, map, {candidate.corner_id, match->px});
   if (refined) {
     candidate.match = match;
     candidate.refined = refined;
   }
 }
 
-std::optional<RefinedCorner> CornerRecovery::refineAt(const cv::Mat& gray, const BoardMap& map,
-                                                      const CornerSeed& seed) const {
+std::optional<RefinedCorner> CornerRecovery::refine(const cv::Mat& gray, const BoardMap& map, const CornerSeed& seed) const {
   if (options_.refinement == Refinement::kFixed) {
     return refineInWindow(gray, seed.px, {});
   }
@@ -195,14 +194,14 @@ std::optional<RefinedCorner> CornerRecovery::refineAt(const cv::Mat& gray, const
     return px && origin_px ? Eigen::Vector2d(*px - *origin_px)
                            : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   };
-  RefineOptions refine;
-  refine.half_window = options_.symmetry_window * target::symmetricHalfWidth(target_);
+  RefineOptions by_symmetry;
+  by_symmetry.half_window = options_.symmetry_window * target::symmetricHalfWidth(target_);
   if (options_.symmetry_window > 1.0) {
-    refine.may_shrink = false;
-    refine.max_half_window_px = kWideWindow_px;
-    refine.max_residual_ratio = std::numeric_limits<double>::infinity();
+    by_symmetry.may_shrink = false;
+    by_symmetry.max_half_window_px = kWideWindow_px;
+    by_symmetry.max_residual_ratio = std::numeric_limits<double>::infinity();
   }
-  return refineBySymmetry(gray, seed.px, offset_map, refine);
+  return refineBySymmetry(gray, seed.px, offset_map, by_symmetry);
 }
 
 void CornerRecovery::findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<CornerCandidate>& candidates) const {

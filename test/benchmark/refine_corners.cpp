@@ -4,6 +4,7 @@
 #include <map>
 #include <opencv2/core.hpp>
 
+#include "board_poses.h"
 #include "common/program.h"
 #include "tartan_calib/detection/refine.h"
 #include "tartan_calib/io/camchain.h"
@@ -41,14 +42,6 @@ Inputs open(char** files) {
   return inputs;
 }
 
-calibration::Solution solvePoses(const Inputs& inputs) {
-  pipeline::CalibrateOptions options;
-  options.models = {camera::modelName(inputs.rig.cameras.front().camera.model)};
-  options.known_rig = inputs.rig;
-  options.solve.fix_intrinsics = true;
-  return pipeline::calibrateCorners({inputs.corners}, inputs.target, options).solution;
-}
-
 /// The corners of one image that lie where `camera` and the board's pose say that the board is symmetric.
 std::vector<observation::Corner> refine(const cv::Mat& gray, const target::Target& target, const camera::Camera& camera,
                                         const geometry::Rigid3& T_cam_target,
@@ -82,11 +75,7 @@ int run(int argc, char** argv) {
     return apps::kWrongUsage;
   }
   Inputs inputs = open(argv + 1);
-  const calibration::Solution solution = solvePoses(inputs);
-  std::map<std::int64_t, geometry::Rigid3> poses;
-  for (std::size_t i = 0; i < solution.views.size(); ++i) {
-    poses[solution.views[i].stamp_ns] = solution.T_rig_target[i];
-  }
+  const std::map<std::int64_t, geometry::Rigid3> poses = boardPoses(inputs.corners, inputs.target, inputs.rig);
   std::map<std::int64_t, cv::Mat> images;
   const pipeline::ImageSource source = inputs.images.open();
   while (const std::optional<pipeline::StampedImage> image = source()) {
@@ -96,9 +85,9 @@ int run(int argc, char** argv) {
     const auto pose = poses.find(view.stamp_ns);
     const auto image = images.find(view.stamp_ns);
     const bool is_known = pose != poses.end() && image != images.end();
-    view.corners =
-        is_known ? refine(image->second, inputs.target, solution.rig.cameras.front().camera, pose->second, view.corners)
-                 : std::vector<observation::Corner>();
+    view.corners = is_known
+                       ? refine(image->second, inputs.target, inputs.rig.cameras.front().camera, pose->second, view.corners)
+                       : std::vector<observation::Corner>();
   }
   io::saveCorners(argv[kNumFiles], {inputs.corners});
   return apps::kSuccess;

@@ -2,6 +2,7 @@
 
 #include "recovery_score.h"
 #include "tartan_calib/detection/corner_recovery.h"
+#include "tartan_calib/median.h"
 
 /// What the choices of refinement do to recovered corners.
 namespace tartan_calib::detection {
@@ -65,6 +66,27 @@ TEST(RecoveryRefinementTest, SymmetryIsBetterThanAnAdaptiveWindowAndThatThanAFix
   }
   EXPECT_LT(by_symmetry.median_px, 0.5 * by_adaptive.median_px);
   EXPECT_LT(by_adaptive.median_px, by_fixed.median_px);
+}
+
+TEST(RecoveryRefinementTest, OneCornerIsRefinedAsAllAre) {
+  const Eigen::Vector2d beside_px(0.2, -0.15);
+  struct Case {
+    Refinement refinement;
+    double last_step_px;  // where the iteration may end beside where it would
+  };
+  for (const Case& one :
+       {Case{Refinement::kSymmetry, 0.005}, Case{Refinement::kAdaptive, 0.06}, Case{Refinement::kFixed, 0.2}}) {
+    const CornerRecovery recovery(kGrid, refineBy(one.refinement));
+    std::vector<double> distances_px;
+    for (const observation::Corner& corner : recovery.recover(tiltedAtTheRim().image, tiltedAtTheRim().map)) {
+      const auto refined =
+          recovery.refine(tiltedAtTheRim().image, tiltedAtTheRim().map, {corner.corner_id, corner.px + beside_px});
+      ASSERT_TRUE(refined) << corner.corner_id;
+      distances_px.push_back((refined->px - corner.px).norm());
+    }
+    EXPECT_GT(distances_px.size(), 100U);
+    EXPECT_LT(upperMedian(distances_px), one.last_step_px);
+  }
 }
 
 TEST(RecoveryRefinementTest, TheBestWindowForSymmetryReachesAsFarAsTheBoardIsSymmetric) {

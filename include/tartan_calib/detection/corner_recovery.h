@@ -15,7 +15,6 @@ namespace tartan_calib::detection {
 
 struct CornerCandidate;
 struct CornerSearch;
-struct CornerSeed;
 class TagPayload;
 
 /// What says that a predicted corner is in the image.
@@ -47,6 +46,12 @@ struct RecoveryOptions {
   double max_quad_distance_px = 1.41;     ///< kQuads: from a quadrilateral's corner to the tag's; TartanCalib's default
 };
 
+/// Where the refinement of a corner begins.
+struct CornerSeed {
+  int corner_id = -1;
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+};
+
 /// Finds the corners of a board whose place in the image is roughly known. No straight edges and no decoded tag are needed:
 /// around each predicted corner the image must show an X-corner of the predicted orientation and polarity; shifts from the
 /// predictions must agree between neighbours; and the payload of the tag, sampled through the map, must agree with its id,
@@ -59,13 +64,16 @@ class CornerRecovery {
   /// Corners by increasing id, refined by symmetry through the map, with covariances. `gray`: CV_8UC1.
   std::vector<observation::Corner> recover(const cv::Mat& gray, const BoardMap& map) const;
 
+  /// Moves one corner to sub-pixel accuracy by the chosen Refinement, as `recover` does with what it has found. Nothing
+  /// where that does not end near.
+  std::optional<RefinedCorner> refine(const cv::Mat& gray, const BoardMap& map, const CornerSeed& seed) const;
+
  private:
   std::vector<CornerCandidate> recoverCandidates(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
   std::vector<CornerCandidate> recoverOnQuads(const cv::Mat& gray, const BoardMap& map) const;
   std::vector<CornerCandidate> predict(const cv::Mat& gray, const BoardMap& map, int dark_diagonal) const;
   void find(const cv::Mat& gray, const BoardMap& map, const Eigen::Vector2d& expected_shift_px, double radius_px,
             CornerCandidate& candidate) const;
-  std::optional<RefinedCorner> refineAt(const cv::Mat& gray, const BoardMap& map, const CornerSeed& seed) const;
   void findWithin(const cv::Mat& gray, const BoardMap& map, const CornerSearch& search, CornerCandidate& candidate) const;
   void findAgain(const cv::Mat& gray, const BoardMap& map, std::vector<CornerCandidate>& candidates) const;
 
