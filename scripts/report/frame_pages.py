@@ -4,34 +4,52 @@ import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
-from style import CYCLE, GRADES, GREY, ORANGE, RED, equal_3d_axes, image_page, magnification, page, panels
+from style import (CYCLE, GRADES, GREY, ORANGE, RED, by_angle, equal_3d_axes, image_page, magnification, page, panels,
+                   steps)
 
 WORST_LENGTH_RATIO = 0.012  # of the image's width, for most of the lines
 WRAP_COLUMNS = 125
+VERDICT_TOP, VERDICT_BOTTOM = 0.88, 0.04  # of the page's height, as are the next two
+VERDICT_LINE = 0.026
+SUMMARY_GAP = 0.04
 
 
 def verdict_page(report):
+    """The verdict with all that it rests on, and a table of the cameras; on further pages what does not fit."""
     verdict = report.verdict
-    figure = page(f"Calibration of {report.name}")
+    title = f"Calibration of {report.name}"
+    figure, height = page(title), 0.79
     figure.text(0.07, 0.86, f"Verdict: {verdict['grade']}", fontsize=22, weight="bold", color="white",
                 bbox={"facecolor": GRADES[verdict["grade"]], "edgecolor": "none", "boxstyle": "round,pad=0.4"})
+    for colour, text in verdict_lines(report):
+        parts = textwrap.wrap(text, WRAP_COLUMNS, subsequent_indent="      ")
+        if height - VERDICT_LINE * len(parts) < VERDICT_BOTTOM:
+            yield "Verdict", figure
+            figure, height = page(f"{title}, continued"), VERDICT_TOP
+        for part in parts:
+            figure.text(0.07, height, part, color=colour, fontsize=10, va="top")
+            height -= VERDICT_LINE
+        height -= 0.3 * VERDICT_LINE
+    size = 0.055 + 0.028 * len(report.cameras)
+    if height - SUMMARY_GAP - size < VERDICT_BOTTOM:
+        yield "Verdict", figure
+        figure, height = page(f"{title}, continued"), VERDICT_TOP
+    add_summary(figure, report, [0.05, height - SUMMARY_GAP - size, 0.9, size])
+    yield "Verdict", figure
+
+
+def verdict_lines(report):
+    """Colour and text."""
+    verdict = report.verdict
     lines = [("black", fact) for fact in verdict["facts"]]
     lines += [(GRADES[reason["grade"]], f"{reason['grade']}: {reason['text']}") for reason in verdict["reasons"]]
     if not verdict["reasons"]:
         lines.append((GRADES["good"], "Nothing speaks against this calibration."))
-    lines += [("#404040", f"note: {warning}") for warning in report.warnings]
-    height = 0.79
-    for colour, text in lines:
-        for part in textwrap.wrap(text, WRAP_COLUMNS, subsequent_indent="      "):
-            figure.text(0.07, height, part, color=colour, fontsize=10, va="top")
-            height -= 0.026
-        height -= 0.008
-    add_summary(figure, report, height - 0.04)
-    yield "Verdict", figure
+    return lines + [("#404040", f"note: {warning}") for warning in report.warnings]
 
 
-def add_summary(figure, report, top):
-    """A table below `top`, or as far up as it must be to have its place on the page."""
+def add_summary(figure, report, place):
+    """A table of the cameras; `place` as left, bottom, width, height."""
     columns = ["camera", "model", "views", "corners", "rms (px)", "median (px)", "reach of corners / image (deg)",
                "focal length\nuncertain to (%)", "projection\nuncertain to (px)", "odd against\neven (px)"]
     rows = []
@@ -42,8 +60,7 @@ def add_summary(figure, report, top):
                      f"{statistics['median_px']:.3f}", f"{camera.max_polar_deg:.0f} / {camera.reach_deg:.0f}",
                      f"{100 * camera.focal_stdev_ratio:.3f}", f"{camera.median_stdev_px:.3f}",
                      "not measured" if difference is None else f"{difference:.3f}"])
-    size = 0.055 + 0.028 * len(rows)
-    axes = figure.add_axes([0.05, max(0.03, top - size), 0.9, size])
+    axes = figure.add_axes(place)
     axes.axis("off")
     table = axes.table(rows, colLabels=columns, cellLoc="center", bbox=[0.0, 0.0, 1.0, 1.0],
                        colWidths=[0.07, 0.12, 0.06, 0.08, 0.08, 0.09, 0.19, 0.11, 0.11, 0.11])
@@ -109,8 +126,7 @@ def show_picture(axes, report, picture):
 
 def worst_page(report, camera):
     title = f"{camera.name}: the {len(camera.worst)} frames with the largest residuals"
-    worst = camera.used.where(np.isin(camera.used.view, [picture["view"] for picture in camera.worst]))
-    factor = magnification(np.hypot(worst.du_px, worst.dv_px), WORST_LENGTH_RATIO * camera.width)
+    factor = min(worst_magnification(other) for other in report.cameras)
     figure = page(title, f"The board, cut out. Circles: used corners as found. Crosses: rejected ones. Lines: from the corner to where the "
                          f"model puts it, {factor:g} times as long.")
     cells = panels(figure, 3, 2, left=0.03, right=0.97, bottom=0.08, top=0.9, wspace=0.06, hspace=0.16).ravel()
@@ -130,6 +146,12 @@ def worst_page(report, camera):
     for axes in cells[len(camera.worst):]:
         axes.axis("off")
     yield title, figure
+
+
+def worst_magnification(camera):
+    """How many times as long residuals can be drawn in the camera's worst frames."""
+    worst = camera.used.where(np.isin(camera.used.view, [picture["view"] for picture in camera.worst]))
+    return magnification(np.hypot(worst.du_px, worst.dv_px), WORST_LENGTH_RATIO * camera.width) if worst.size else np.inf
 
 
 def rounds_page(report, camera):
@@ -156,14 +178,14 @@ def rounds_page(report, camera):
     bands = np.arange(0.0, max(other.max_polar_deg for other in report.cameras) + 10.0, 10.0)
     below = np.zeros(len(bands) - 1)
     for number in rounds:
-        polar = camera.found.polar_deg[camera.found.round == number]
-        counts, _ = np.histogram(polar[np.isfinite(polar)], bands)
-        right.bar(bands[:-1], counts, 10.0, bottom=below, align="edge", color=round_colour(number), edgecolor="white",
-                  label=f"round {number}: {counts.sum()}")
+        counts = by_angle(camera.found.where(camera.found.round == number), bands)
+        steps(right, bands, counts, below, color=round_colour(number), label=f"round {number}: {counts.sum()}")
         below += counts
+    right.set_xlim(0, bands[-1])
+    right.set_ylim(0, 1.05 * max(1, *(by_angle(other.found, bands).max() for other in report.cameras)))
     right.set_title("all views")
     right.set_xlabel("angle from the optical axis (deg)")
-    right.set_ylabel("corners")
+    right.set_ylabel("corners in 10 degrees")
     right.legend()
     yield title, figure
 

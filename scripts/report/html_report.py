@@ -2,8 +2,9 @@
 
 import base64
 import html
-import io
 import json
+import struct
+import zlib
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -22,12 +23,24 @@ def pages_html(report):
     parts = []
     for index, (title, figure) in enumerate(pdf_report.pages(report)):
         if title not in ("Verdict", "Calibration results"):  # which the page shows as text
-            content = io.BytesIO()
-            figure.savefig(content, format="png", dpi=PAGE_DPI, pil_kwargs={"compress_level": 3})  # half the time of 6
             heading = html.escape(title)
-            parts.append(f'<figure id="page{index}"><img alt="{heading}" src="{data_url(content.getvalue(), "png")}"></figure>')
+            parts.append(f'<figure id="page{index}"><img alt="{heading}" src="{data_url(picture_of(figure), "png")}"></figure>')
         plt.close(figure)
     return "\n".join(parts)
+
+
+def picture_of(figure):
+    """The page as PNG. Without filters zlib's fastest level takes a third of Pillow's time, for as many bytes."""
+    figure.set_dpi(PAGE_DPI)
+    figure.canvas.draw()
+    rgb = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    height, width, channels = rgb.shape
+    rows = np.zeros((height, 1 + width * channels), np.uint8)  # a row begins with the number of its filter: none
+    rows[:, 1:] = rgb.reshape(height, -1)
+    header = struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)  # bits of a channel, kind RGB, the only methods there are
+    chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in chunks)
 
 
 def verdict_html(report):

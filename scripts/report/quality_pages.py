@@ -2,14 +2,17 @@
 
 import numpy as np
 from matplotlib.colors import LogNorm
-from style import (AMOUNTS, BLUE, CYCLE, GREY, ORANGE, RED, colour_bar, image_axes, image_page, legend_above,
-                   magnification, page, panels)
+from matplotlib.ticker import NullLocator
+from style import (AMOUNTS, BLUE, CYCLE, GREY, ORANGE, RED, arrows, by_angle, cell_counts, cells, colour_bar, image_axes,
+                   image_extent, image_page, legend_above, magnification, page, panels, steps)
 
 BAND_DEG = 5.0
 MAP_LEVELS_PX = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.3, 1.0, 3.0, 10.0)
 FAIR_PX = 0.1  # about what detection of one corner is good for: a projection better than that is not the weakest part
 MAX_ARROWS = 2500
 MIN_IN_CELL = 10
+COVERAGE_COLUMNS = 40
+NO_BIAS = {"mean_px": 0.0, "stdev_px": 0.0}
 
 
 def shared_max(report, values_of):
@@ -21,36 +24,32 @@ def shared_max(report, values_of):
 def coverage_page(report, camera):
     title = f"{camera.name}: coverage"
     figure = image_page(title, "Missed: the solution expects the corner in the image, but nothing was found there: hidden, blurred, "
-                               "too small, or outside of the lens's image circle.", camera)
-    left, right = panels(figure)[0]
-    image_axes(left, camera, f"{camera.found.size} corners found, {camera.missed.size} missed")
-    cells = left.hexbin(camera.found.u_px, camera.found.v_px, gridsize=40, cmap=AMOUNTS, mincnt=1, vmin=1,
-                        vmax=max(2.0, shared_max(report, most_in_a_cell)), extent=(0, camera.width, 0, camera.height))
-    left.plot(camera.missed.u_px, camera.missed.v_px, ".", color=RED, markersize=2, label="missed", rasterized=True)
-    draw_ring(left, camera)
-    legend_above(left)
-    colour_bar(figure, cells, left, "corners found in a cell")
+                               "too small, or outside of the lens's image circle. Dashed: the farthest corner, at "
+                               f"{camera.max_polar_deg:.0f} degrees.", camera, columns=3)
+    left, middle, right = panels(figure, 3, wspace=0.28)[0]
+    most = max(2.0, shared_max(report, lambda other: np.maximum(coverage(other.found, other), coverage(other.missed, other))))
+    for axes, corners, kind in ((left, camera.found, "found"), (middle, camera.missed, "missed")):
+        image_axes(axes, camera, f"{corners.size} corners {kind}")
+        image = cells(axes, np.ma.masked_equal(coverage(corners, camera), 0), image_extent(camera), cmap=AMOUNTS, vmin=0, vmax=most)
+        draw_ring(axes, camera)
+    colour_bar(figure, image, [left, middle], "corners in a cell")
     longest = shared_max(report, lambda other: np.append(other.found.polar_deg, other.missed.polar_deg))
     bands = np.arange(0.0, longest + BAND_DEG, BAND_DEG)
-    found, _ = np.histogram(camera.found.polar_deg[np.isfinite(camera.found.polar_deg)], bands)
-    missed, _ = np.histogram(camera.missed.polar_deg, bands)
-    right.bar(bands[:-1], found, BAND_DEG, align="edge", color=BLUE, edgecolor="white", label="found")
-    right.bar(bands[:-1], missed, BAND_DEG, bottom=found, align="edge", color=ORANGE, edgecolor="white", hatch="//",
-              label="missed")
+    found, missed = by_angle(camera.found, bands), by_angle(camera.missed, bands)
+    steps(right, bands, found, color=BLUE, label="found")
+    steps(right, bands, missed, found, facecolor=ORANGE, edgecolor="white", hatch="//", label="missed")
     right.set_xlim(0, bands[-1])
-    right.set_ylim(0, 1.05 * shared_max(report, lambda other: np.histogram(np.append(other.found.polar_deg,
-                                                                                     other.missed.polar_deg), bands)[0]))
+    right.set_ylim(0, 1.05 * shared_max(report, lambda other: by_angle(other.found, bands) + by_angle(other.missed, bands)))
     right.set_xlabel("angle from the optical axis (deg)")
-    right.set_ylabel("corners")
-    right.legend()
+    right.set_ylabel(f"corners in {BAND_DEG:g} degrees")
+    legend_above(right)
     yield title, figure
 
 
-def most_in_a_cell(camera):
-    """About the largest number of corners in a hexagon of the coverage, which has half of a rectangle's."""
-    counts, _, _ = np.histogram2d(camera.found.u_px, camera.found.v_px, bins=(40, 46),
-                                  range=((0, camera.width), (0, camera.height)))
-    return np.quantile(counts, 0.995)
+def coverage(corners, camera):
+    """How many corners are in each square cell of the image."""
+    rows = max(1, round(COVERAGE_COLUMNS * camera.height / camera.width))
+    return cell_counts(corners.u_px, corners.v_px, (rows, COVERAGE_COLUMNS), image_extent(camera))
 
 
 def draw_ring(axes, camera):
@@ -59,7 +58,6 @@ def draw_ring(axes, camera):
     if polar.count() and polar.min() < camera.max_polar_deg < polar.max():
         axes.contour(camera.grid("u_px"), camera.grid("v_px"), polar, [camera.max_polar_deg], colors="black",
                      linestyles="dashed", linewidths=1)
-        axes.plot([], [], "--", color="black", linewidth=1, label=f"farthest corner: {camera.max_polar_deg:.0f} deg")
 
 
 def vectors_page(report, camera):
@@ -73,8 +71,7 @@ def vectors_page(report, camera):
         u, v, du, dv = arrows_of(camera)
         factor = min(magnification(np.hypot(*arrows_of(other)[2:]), 0.04 * other.width) for other in report.cameras)
         image_axes(axes, camera, f"{what}, {factor:g} times")
-        axes.quiver(u, v, factor * du, factor * dv, color=BLUE, angles="xy", scale_units="xy", scale=1, width=0.002,
-                    rasterized=True)
+        arrows(axes, u, v, factor * du, factor * dv, color=BLUE, linewidth=0.6)
     yield title, figure
 
 
@@ -108,8 +105,9 @@ def histogram_page(report, camera):
     width = robust_width(camera)
     for axes, reach in ((left, 5.0 * max(robust_width(other) for other in report.cameras)), (right, limit)):
         edges = np.linspace(-reach, reach, 81)
-        counts, _, _ = axes.hist([camera.used.du_px, camera.used.dv_px], bins=edges, stacked=True, color=[BLUE, ORANGE],
-                                 label=["x", "y"], histtype="stepfilled")
+        of_x, of_y = (np.histogram(values, edges)[0] for values in (camera.used.du_px, camera.used.dv_px))
+        steps(axes, edges, of_x, color=BLUE, label="x")
+        steps(axes, edges, of_y, of_x, color=ORANGE, label="y")
         middle = np.linspace(-reach, reach, 400)
         expected = residuals.size * (edges[1] - edges[0]) * np.exp(-0.5 * (middle / width) ** 2) / (width * np.sqrt(2 * np.pi))
         axes.plot(middle, expected, color="black", linewidth=1.2, label=f"normal, stdev {width:.3f} px")
@@ -120,7 +118,9 @@ def histogram_page(report, camera):
     left.legend()
     right.set_title("all, logarithmic: the tails")
     right.set_yscale("log")
-    right.set_ylim(0.7, 2.0 * max(counts[-1].max(), 1.0))
+    right.yaxis.set_major_formatter("{x:g}")
+    right.yaxis.set_minor_locator(NullLocator())
+    right.set_ylim(0.7, 2.0 * max((of_x + of_y).max(), 1.0))
     yield title, figure
 
 
@@ -145,7 +145,8 @@ def rms_page(report, camera):
     left.axhline(0.0, color=GREY, linewidth=0.8)
     left.set_xlim(0, max(other.max_polar_deg for other in report.cameras) + 5.0)
     top = max(band["rms_px"] for other in report.cameras for band in other.statistics["bands"])
-    left.set_ylim(min(0.0, *(bias["mean_px"] - bias["stdev_px"] for bias in biases), 0.0) * 1.1, 1.2 * top)
+    bottom = min(bias["mean_px"] - bias["stdev_px"] for other in report.cameras for bias in [*other.radial_biases, NO_BIAS])
+    left.set_ylim(1.1 * bottom, 1.2 * top)
     left.set_xlabel("angle from the optical axis (deg)")
     left.set_ylabel("residual (px)")
     left.legend()
@@ -174,7 +175,7 @@ def curves_page(report):
     left, right = panels(figure)[0]
     for index, camera in enumerate(report.cameras):
         angle, radius = camera.curve.angle_deg, camera.curve.radius_px
-        scale = np.gradient(radius, np.radians(angle)) if len(angle) > 2 else np.zeros_like(radius)
+        scale = image_scale(camera)
         colour = CYCLE[index % len(CYCLE)]
         known = angle <= camera.max_polar_deg
         for axes, values in ((left, radius), (right, scale)):
@@ -193,9 +194,20 @@ def curves_page(report):
         axes.set_xlabel("angle from the optical axis (deg)")
         axes.set_ylabel(label)
     left.set_ylim(0, top)
-    right.set_ylim(0, None)
+    right.set_ylim(0, 1.3 * shared_max(report, known_scale))
     left.legend(loc="lower right")
     yield title, figure
+
+
+def image_scale(camera):
+    """Pixels per radian along the radius, for all angles of the curve."""
+    angle, radius = np.radians(camera.curve.angle_deg), camera.curve.radius_px
+    return np.gradient(radius, angle) if len(angle) > 2 else np.zeros_like(radius)
+
+
+def known_scale(camera):
+    """The same as far as there are corners."""
+    return image_scale(camera)[camera.curve.angle_deg <= camera.max_polar_deg]
 
 
 def map_limits(report):
@@ -223,14 +235,15 @@ def draw_map(axes, camera, column, title, norm):
     image_axes(axes, camera, title)
     u, v = camera.grid("u_px"), camera.grid("v_px")
     shown = shown_values(camera, column)
-    mesh = axes.pcolormesh(u, v, shown, norm=norm, cmap=AMOUNTS, shading="nearest", rasterized=True)
+    half_u, half_v = 0.5 * (u[0, 1] - u[0, 0]), 0.5 * (v[1, 0] - v[0, 0])
+    image = cells(axes, shown, (u[0, 0] - half_u, u[0, -1] + half_u, v[-1, 0] + half_v, v[0, 0] - half_v), norm=norm, cmap=AMOUNTS)
     for levels, colour, width in ((MAP_LEVELS_PX, "white", 0.7), ((FAIR_PX,), RED, 2.0)):
         crossed = [level for level in levels if is_crossed(shown, level)]
         if crossed:
             axes.clabel(axes.contour(u, v, shown, crossed, colors=colour, linewidths=width), fmt="%g px", fontsize=7)
     draw_ring(axes, camera)
     axes.grid(False)
-    return mesh
+    return image
 
 
 def maps_page(report, camera):
@@ -243,14 +256,14 @@ def maps_page(report, camera):
     figure = image_page(title, note, camera)
     left, right = panels(figure)[0]
     norm = LogNorm(*map_limits(report), clip=True)
-    mesh = draw_map(left, camera, "stdev_px", f"uncertainty, median {camera.median_stdev_px:.2g} px", norm)
+    image = draw_map(left, camera, "stdev_px", f"uncertainty, median {camera.median_stdev_px:.2g} px", norm)
     if camera.median_difference_px is None:
         right.axis("off")
         right.text(0.5, 0.5, "not measured: each half of the views\nmust determine a calibration", ha="center", va="center")
     else:
         draw_map(right, camera, "difference_px", f"odd against even, median {camera.median_difference_px:.2g} px, by noise "
                  f"{camera.median_expected_difference_px:.2g} px", norm)
-    colour_bar(figure, mesh, [left, right], "pixels", extend="both")
+    colour_bar(figure, image, [left, right], "pixels", extend="both")
     yield title, figure
 
 
