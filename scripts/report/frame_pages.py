@@ -194,10 +194,11 @@ def round_colour(number):
     return (CYCLE[5], CYCLE[1], CYCLE[2], CYCLE[4], CYCLE[7])[min(number, 4)]
 
 
-def pages(report):
-    yield from rig_page(report)
+def parts(report):
+    """Generators of pages, of which none draws before it is asked."""
+    yield rig_page(report)
     for camera in report.cameras:
         if camera.worst:
-            yield from worst_page(report, camera)
+            yield worst_page(report, camera)
         if camera.frames and report.rounds:
-            yield from rounds_page(report, camera)
+            yield rounds_page(report, camera)

@@ -180,15 +180,16 @@ def outliers_pages(report):
         yield title, figure
 
 
-def pages(report):
-    yield from text_pages(report)
+def parts(report):
+    """Generators of pages, of which none draws before it is asked."""
+    yield text_pages(report)
     if len(report.cameras) > 1:
-        yield from graph_page(report)
-        yield from camera_system_page(report)
+        yield graph_page(report)
+        yield camera_system_page(report)
     if len(report.views) > 2:
-        yield from poses_page(report)
+        yield poses_page(report)
     for camera in report.cameras:
-        yield from error_over_angle(report, camera, "polar")
-        yield from error_over_angle(report, camera, "azimuthal")
-        yield from reprojection_page(report, camera)
-    yield from outliers_pages(report)
+        yield error_over_angle(report, camera, "polar")
+        yield error_over_angle(report, camera, "azimuthal")
+        yield reprojection_page(report, camera)
+    yield outliers_pages(report)

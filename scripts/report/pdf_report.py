@@ -9,11 +9,14 @@ from matplotlib.backends.backend_pdf import PdfPages
 RASTER_DPI = 130  # of points too many for vectors
 
 
+def parts(report):
+    return [frame_pages.verdict_page(report), *kalibr_pages.parts(report), *quality_pages.parts(report), *frame_pages.parts(report)]
+
+
 def pages(report):
-    yield from frame_pages.verdict_page(report)
-    yield from kalibr_pages.pages(report)
-    yield from quality_pages.pages(report)
-    yield from frame_pages.pages(report)
+    for part in parts(report):
+        yield from part
+        report.part_done()
 
 
 def write(report):

@@ -267,12 +267,13 @@ def maps_page(report, camera):
     yield title, figure
 
 
-def pages(report):
+def parts(report):
+    """Generators of pages, of which none draws before it is asked."""
     for camera in report.cameras:
-        yield from coverage_page(report, camera)
-        yield from vectors_page(report, camera)
-        yield from histogram_page(report, camera)
-        yield from rms_page(report, camera)
-    yield from curves_page(report)
+        yield coverage_page(report, camera)
+        yield vectors_page(report, camera)
+        yield histogram_page(report, camera)
+        yield rms_page(report, camera)
+    yield curves_page(report)
     for camera in report.cameras:
-        yield from maps_page(report, camera)
+        yield maps_page(report, camera)

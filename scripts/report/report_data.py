@@ -61,6 +61,7 @@ class Report:
 
     def __init__(self, folder):
         self.folder = Path(folder)
+        self.part_done = lambda: None  # called after every part of the pages
         description = json.loads((self.folder / "data.json").read_text())
         vars(self).update(description)
         self.name = Path(self.recording).stem or self.recording

@@ -15,7 +15,7 @@ using namespace tartan_calib::apps;
 SimulateSummary render(const SimulateOptions& options) {
   ProgressBar bar(isatty(STDOUT_FILENO) != 0);
   const UninterruptedSection all_or_nothing;
-  const SimulateSummary summary = simulate(options, [&bar](std::size_t done, std::size_t total) {
+  SimulateSummary summary = simulate(options, [&bar](std::size_t done, std::size_t total) {
     bar.show(done, total);
     setItemsDone(done, total, "views");
     throwIfInterrupted();

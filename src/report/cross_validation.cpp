@@ -56,7 +56,6 @@ std::optional<std::array<calibration::Solution, 2>> solveHalves(const pipeline::
   solve.anneal_robust_loss = false;  // the corners are sorted out, and the start is good
   solve.remove_outliers = false;
   solve.final_filtering = false;
-  solve.progress = nullptr;
   std::array<calibration::Solution, 2> halves;
   for (std::size_t remainder = 0; remainder < 2; ++remainder) {
     const calibration::Problem half = halfProblem(result, remainder);
@@ -64,6 +63,9 @@ std::optional<std::array<calibration::Solution, 2>> solveHalves(const pipeline::
       return std::nullopt;
     }
     halves[remainder] = calibration::solve(half, solve);
+    if (halves[remainder].status == calibration::SolveStatus::kCancelled) {
+      throw pipeline::Cancelled("the report was stopped");
+    }
     if (halves[remainder].status != calibration::SolveStatus::kConverged) {
       return std::nullopt;
     }

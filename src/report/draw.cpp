@@ -14,9 +14,9 @@
 #include <iterator>
 #include <thread>
 
+#include "listen.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/atomic_file.h"
-#include "tartan_calib/pipeline/calibrate.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -68,12 +68,22 @@ pid_t start(const std::array<const char*, 5>& words, const std::string& log) {
   return process;
 }
 
+void tellDrawn(const std::string& path, const Listener& listener) {
+  std::ifstream file(path);
+  std::size_t total = 0;
+  std::string dots;
+  file >> total >> dots;
+  listener.progress(dots.size(), total);
+}
+
 /// Exit status as waitpid has it.
-int wait(pid_t process, const std::function<bool()>& is_cancelled) {
+int wait(pid_t process, const std::string& drawn, const Listener& listener) {
   int status = 0;
   while (waitpid(process, &status, WNOHANG) == 0) {
-    if (is_cancelled && is_cancelled()) {
+    if (isCancelled(listener)) {
       kill(-process, SIGKILL);
+    } else if (listener.progress) {
+      tellDrawn(drawn, listener);
     }
     std::this_thread::sleep_for(kPoll);
   }
@@ -83,13 +93,11 @@ int wait(pid_t process, const std::function<bool()>& is_cancelled) {
 }  // namespace
 
 void drawReport(const std::string& script, const std::string& folder, const std::string& pdf_path,
-                const std::string& html_path, const std::function<bool()>& is_cancelled) {
+                const std::string& html_path, const Listener& listener) {
   const std::string log = folder + "/log.txt";
   const pid_t process = start({python(), "-B", script.c_str(), folder.c_str(), nullptr}, log);
-  const int status = wait(process, is_cancelled);
-  if (is_cancelled && is_cancelled()) {
-    throw pipeline::Cancelled("the report was stopped");
-  }
+  const int status = wait(process, folder + "/drawn", listener);
+  throwIfCancelled(listener);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw InputError(lastLine(log));
   }

@@ -1,6 +1,4 @@
 #include "tartan_calib/report/pictures.h"
-#include "tartan_calib/text.h"
-#include "tartan_calib/threads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
+
+#include "listen.h"
+#include "tartan_calib/text.h"
+#include "tartan_calib/threads.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -73,11 +75,34 @@ cv::Rect boardArea(const SeenCorners& corners, int view, const cv::Size& image) 
   return area & cv::Rect({}, image);
 }
 
+using Orders = std::map<std::int64_t, Order>;  ///< by the images' stamps
+
+/// Tells how many of the ordered images of all cameras are done.
+class Counter {
+ public:
+  Counter(const std::vector<Orders>& orders, const Listener& listener) : listener_(listener) {
+    for (const Orders& of_camera : orders) {
+      total_ += of_camera.size();
+    }
+  }
+  void count() {
+    ++done_;
+    if (listener_.progress) {
+      listener_.progress(done_, total_);
+    }
+  }
+
+ private:
+  const Listener& listener_;
+  std::size_t done_ = 0;
+  std::size_t total_ = 0;
+};
+
 /// Pictures of one camera, taken on several threads.
 class Photographer {
  public:
-  Photographer(std::map<std::int64_t, Order> orders, std::string folder, std::string name)
-      : orders_(std::move(orders)), folder_(std::move(folder)), name_(std::move(name)) {}
+  Photographer(Orders orders, std::string folder, std::string name, Counter& counter)
+      : orders_(std::move(orders)), folder_(std::move(folder)), name_(std::move(name)), counter_(counter) {}
 
   void run(const pipeline::CameraStream& stream, const PictureOptions& options) {
     const pipeline::ImageSource source = stream.open();
@@ -88,6 +113,7 @@ class Photographer {
     for (std::future<void>& worker : workers) {
       worker.get();
     }
+    throwIfCancelled(options.listener);
   }
 
   std::map<int, Taken> taken;  ///< by view
@@ -95,7 +121,7 @@ class Photographer {
 
  private:
   void work(const pipeline::ImageSource& source, const PictureOptions& options) {
-    while (!options.is_cancelled || !options.is_cancelled()) {
+    while (!isCancelled(options.listener)) {
       std::optional<pipeline::StampedImage> image;
       std::optional<Order> order;
       {
@@ -112,6 +138,8 @@ class Photographer {
       }
       if (order) {
         take(*image, *order);
+        const std::lock_guard<std::mutex> lock(mutex_);
+        counter_.count();
       }
     }
   }
@@ -157,16 +185,17 @@ class Photographer {
     return picture;
   }
 
-  std::map<std::int64_t, Order> orders_;
+  Orders orders_;
   std::string folder_;
   std::string name_;
+  Counter& counter_;
   std::mutex mutex_;
 };
 
-/// Orders for one camera by the images' stamps.
-std::map<std::int64_t, Order> orders(const pipeline::CalibrationResult& result, int camera_index, const SeenCorners& corners,
-                                     const std::vector<int>& worst, std::size_t max_frames) {
-  std::map<std::int64_t, Order> all;
+/// Orders for one camera.
+Orders ordersFor(const pipeline::CalibrationResult& result, int camera_index, const SeenCorners& corners,
+                 const std::vector<int>& worst, std::size_t max_frames) {
+  Orders all;
   const camera::Camera& camera = result.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera;
   for (std::size_t view = 0; view < result.solution.views.size(); ++view) {
     for (const observation::CameraView& image : result.solution.views[view].cameras) {
@@ -192,18 +221,24 @@ std::map<std::int64_t, Order> orders(const pipeline::CalibrationResult& result, 
 std::vector<CameraPictures> takePictures(const std::vector<pipeline::CameraStream>& streams,
                                          const pipeline::CalibrationResult& result, const std::vector<SeenCorners>& corners,
                                          const std::string& folder, const PictureOptions& options) {
+  std::vector<std::vector<int>> worst;
+  std::vector<Orders> orders;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const auto max_frames = std::max<std::size_t>(1, static_cast<std::size_t>(options.max_frames) / streams.size());
+    worst.push_back(worstViews(corners[i], options.num_worst));
+    orders.push_back(ordersFor(result, static_cast<int>(i), corners[i], worst[i], max_frames));
+  }
+  Counter counter(orders, options.listener);
   std::vector<CameraPictures> cameras(corners.size());
   for (std::size_t i = 0; i < streams.size(); ++i) {
-    const std::vector<int> worst = worstViews(corners[i], options.num_worst);
-    const auto max_frames = std::max<std::size_t>(1, static_cast<std::size_t>(options.max_frames) / streams.size());
-    Photographer photographer(orders(result, static_cast<int>(i), corners[i], worst, max_frames), folder, cameraName(i));
+    Photographer photographer(orders[i], folder, cameraName(i), counter);
     photographer.run(streams[i], options);
     for (const auto& [view, taken] : photographer.taken) {
       if (taken.frame) {
         cameras[i].frames.push_back(*taken.frame);
       }
     }
-    for (const int view : worst) {
+    for (const int view : worst[i]) {
       const auto taken = photographer.taken.find(view);
       if (taken != photographer.taken.end() && taken->second.worst) {
         cameras[i].worst.push_back(*taken->second.worst);

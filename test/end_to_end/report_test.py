@@ -6,7 +6,7 @@ import shutil
 import unittest
 from pathlib import Path
 
-from programs import PROGRAMS, Recordings, assert_stopped, calibrate, interrupt_after, run_command, start
+from programs import PROGRAMS, Recordings, assert_stopped, calibrate, interrupt_after, run_command, start, start_on_terminal
 
 MODELS = ["ds-none", "ds-none"]
 KALIBR_PAGES = ["Inter-camera observations graph", "camera system", "cam0: estimated poses", "cam0: polar error",
@@ -96,12 +96,15 @@ class ReportOfARig(unittest.TestCase):
         self.assertEqual(title, "frames 16 differ true")
 
 
+VIEWS = 10
+
+
 class ReportThatCannotBeDrawn(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.recordings = Recordings()
         cls.addClassCleanup(cls.recordings.remove)
-        cls.bag = cls.recordings.simulate("one", "--resolution", "320x256", "--views", 10)
+        cls.bag = cls.recordings.simulate("one", "--resolution", "320x256", "--views", VIEWS)
 
     def calibrate(self, **environment):
         words = [PROGRAMS / "calibrate_cameras", "--bag", self.bag, "--target", self.recordings.target("one"), "--topics",
@@ -137,6 +140,23 @@ class ReportThatCannotBeDrawn(unittest.TestCase):
                                env={**os.environ, "PYTHONPATH": str(modules)})
         self.assertEqual(finished.returncode, 0, finished.stdout)
         self.assertIn("Drawing the report: 2s", finished.stdout)
+
+    def test_terminal_shows_a_bar_with_the_time_left(self):
+        process, terminal = start_on_terminal(self, "calibrate_cameras", "--bag", self.bag, "--target", self.recordings.target("one"),
+                                              "--topics", "/cam0/image_raw", "--models", "ds-none", "--max-rounds", 0)
+        shown = b""
+        with process, process.stderr:
+            while b"Report written" not in shown:
+                shown += os.read(terminal, 4096)
+        for file in self.reports():
+            file.unlink()
+        drawing = shown[shown.index(b"Generating result report"):]
+        done = [tuple(map(int, pair)) for pair in re.findall(rb"Progress (\d+) / (\d+) \t Time remaining: \d", drawing)]
+        parts = [pair for pair in done if pair[1] != VIEWS]
+        self.assertGreater(len(parts), 3, shown)
+        self.assertEqual(parts, sorted(parts))
+        self.assertEqual(len({total for _, total in parts}), 1, parts)
+        self.assertGreater(parts[-1][0], parts[-1][1] / 2, parts)
 
     def test_ctrl_c_while_it_is_drawn_keeps_the_result_and_leaves_nothing(self):
         scratch = self.recordings.path / "scratch"

@@ -99,6 +99,30 @@ TEST_F(PicturesTest, AreBoundedInNumber) {
   EXPECT_LE(take(options).frames.size(), 3U);
 }
 
+TEST_F(PicturesTest, TellHowManyAreDone) {
+  std::vector<std::size_t> dones;
+  PictureOptions options;
+  options.listener.progress = [&](std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, waved.views.size());
+    dones.push_back(done);
+  };
+  take(options);
+  ASSERT_EQ(dones.size(), waved.views.size());
+  for (std::size_t i = 0; i < dones.size(); ++i) {
+    EXPECT_EQ(dones[i], i + 1);
+  }
+}
+
+TEST_F(PicturesTest, StopWhenCancelled) {
+  std::size_t num_done = 0;
+  PictureOptions options;
+  options.num_threads = 1;
+  options.listener.progress = [&](std::size_t done, std::size_t /*total*/) { num_done = done; };
+  options.listener.is_cancelled = [&] { return num_done >= 3; };
+  EXPECT_THROW(take(options), pipeline::Cancelled);
+  EXPECT_EQ(num_done, 3U);
+}
+
 TEST_F(PicturesTest, KnowTheBrightestValueOfEveryPixel) {
   const CameraPictures pictures = take();
   double darkest = 0.0;

@@ -113,5 +113,11 @@ TEST(CrossValidationTest, IsLeftOutWhereTheIntrinsicsAreFixedOrViewsAreFew) {
   EXPECT_FALSE(solveHalves(solved(few), {}));
 }
 
+TEST(CrossValidationTest, StopsWhenCancelled) {
+  pipeline::CalibrateOptions stopping;
+  stopping.solve.progress = [](const calibration::SolveProgress& /*iteration*/) { return false; };
+  EXPECT_THROW(solveHalves(solved(noisyScene(1)), stopping), pipeline::Cancelled);
+}
+
 }  // namespace
 }  // namespace tartan_calib::report

@@ -56,7 +56,8 @@ struct Analysis {
   std::vector<CameraTiming> timings;
 };
 
-/// Everything about a result that needs its camera models. `pictures` may be empty. `corners`: seenCorners(result).
+/// Everything about a result that needs its camera models. `pictures` may be empty. `corners`: seenCorners(result). Throws
+/// pipeline::Cancelled where options.solve.progress ends a solve.
 Analysis analyse(const pipeline::CalibrationResult& result, const pipeline::CalibrateOptions& options,
                  std::vector<SeenCorners> corners, const std::vector<CameraPictures>& pictures);
 

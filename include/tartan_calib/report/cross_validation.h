@@ -9,6 +9,7 @@ namespace tartan_calib::report {
 
 /// The calibrations of the views with even and with odd index, each started from the result and with the corners that the
 /// result used. Empty where a half does not determine a calibration, and where the intrinsics were held fixed.
+/// Throws pipeline::Cancelled where options.solve.progress ends it.
 std::optional<std::array<calibration::Solution, 2>> solveHalves(const pipeline::CalibrationResult& result,
                                                                 const pipeline::CalibrateOptions& options);
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "tartan_calib/pipeline/calibrate.h"
+#include "tartan_calib/report/listener.h"
 #include "tartan_calib/report/seen_corners.h"
 
 namespace tartan_calib::report {
@@ -28,7 +28,7 @@ struct PictureOptions {
   int max_frames = 480;  ///< of all cameras together
   int num_worst = 5;     ///< per camera
   int num_threads = 0;   ///< 0: all cores
-  std::function<bool()> is_cancelled;
+  Listener listener;     ///< told of the images
 };
 
 /// Goes through the images once more and writes pictures of the solution's views into the folder. Images that cannot be

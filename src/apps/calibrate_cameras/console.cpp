@@ -91,19 +91,34 @@ void Console::noteStep(const pipeline::Progress& progress) {
 
 void Console::onProgress(const pipeline::Progress& progress) {
   noteStep(progress);
-  if (progress.total == 0) {
-    bar_.showElapsed(pipeline::stageName(progress.stage) + ", iteration " + std::to_string(progress.done));
+  const bool has_images = progress.stage == pipeline::Stage::kDetect || progress.stage == pipeline::Stage::kRecover;
+  if (!has_images) {
+    showStep(pipeline::stageName(progress.stage), 0, 0);
+    if (progress.done == progress.total) {
+      bar_.clear();
+    }
     return;
   }
-  if (progress.done == 0) {
-    bar_.clear();
-  }
+  step_.clear();
   if (progress.stage == pipeline::Stage::kDetect && progress.done == 0) {
     printCameraHeader(progress.camera_index, progress.total);
     std::printf("Extracting calibration target corners\n");
     std::fflush(stdout);
   }
   bar_.show(progress.done, progress.total);
+}
+
+void Console::showStep(const std::string& step, std::size_t done, std::size_t total) {
+  if (step != step_) {
+    bar_.clear();
+    bar_.show(0, 0);
+    step_ = step;
+  }
+  if (done > 0 && total > 0) {
+    bar_.show(done, total);
+  } else {
+    bar_.showElapsed(step);
+  }
 }
 
 void Console::onDetected(int camera_index, const pipeline::CameraCorners& corners) {

@@ -20,8 +20,8 @@ class Console {
 
   void printResult(const pipeline::CalibrationResult& result);
   void printFiles(const OutputFiles& files);
-  void startDrawing() { bar_.show(0, 0); }
-  void showDrawing() { bar_.showElapsed("Drawing the report"); }
+  /// Of the report; where `total` is not known yet, for how long the step has run.
+  void showStep(const std::string& step, std::size_t done, std::size_t total);
   void printReport(const ReportFiles& report);
   void printTimes(const pipeline::CalibrationResult& result);
 
@@ -36,6 +36,7 @@ class Console {
 
   const Inputs& inputs_;
   ProgressBar bar_;
+  std::string step_;  ///< that the bar is about
   int round_ = 0;
   int num_rounds_finished_ = 0;
 };

@@ -49,30 +49,44 @@ std::string scriptPath() {
   return (program.parent_path().parent_path().parent_path() / "share" / package / "report" / "draw_report.py").string();
 }
 
+report::Listener stepListener(const std::string& step, const ReportListener& listener) {
+  report::Listener of_step;
+  of_step.is_cancelled = listener.is_cancelled;
+  if (listener.progress) {
+    of_step.progress = [step, tell = listener.progress](std::size_t done, std::size_t total) { tell(step, done, total); };
+  }
+  return of_step;
+}
+
+pipeline::CalibrateOptions analysisOptions(const Inputs& inputs, const ReportListener& listener) {
+  pipeline::CalibrateOptions options = inputs.options;
+  options.solve.progress = [of_step = stepListener("Analysis", listener)](const calibration::SolveProgress& /*iteration*/) {
+    if (of_step.progress) {
+      of_step.progress(0, 0);
+    }
+    return !of_step.is_cancelled();
+  };
+  return options;
+}
+
 }  // namespace
 
 ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
-                        const std::function<bool()>& is_cancelled, const std::function<void()>& on_drawing) {
+                        const ReportListener& listener) {
   ReportFiles files;
   try {
     const TemporaryFolder folder;
     report::PictureOptions options;
     options.num_threads = inputs.options.num_threads;
-    options.is_cancelled = is_cancelled;
+    options.listener = stepListener("Pictures of the views", listener);
     const auto corners = report::seenCorners(result);
     const auto pictures = report::takePictures(inputs.streams, result, corners, folder.path(), options);
-    const report::Analysis analysis = report::analyse(result, inputs.options, corners, pictures);
+    const report::Analysis analysis = report::analyse(result, analysisOptions(inputs, listener), corners, pictures);
     files.verdict = report::judge(result, analysis);
     report::writeReportData(folder.path(), {inputs.dataset, result, analysis, *files.verdict, pictures});
     const std::string pdf = prefix + "-report-cam.pdf";
     const std::string html = prefix + "-report-cam.html";
-    const auto is_stopped = [&] {
-      if (on_drawing) {
-        on_drawing();
-      }
-      return is_cancelled && is_cancelled();
-    };
-    report::drawReport(scriptPath(), folder.path(), pdf, html, is_stopped);
+    report::drawReport(scriptPath(), folder.path(), pdf, html, stepListener("Drawing the report", listener));
     files.pdf = pdf;
     files.html = html;
   } catch (const std::exception& error) {  // the calibration is written; a report is not worth failing for

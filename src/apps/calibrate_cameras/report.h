@@ -17,10 +17,17 @@ struct ReportFiles {
   std::string failure;
 };
 
-/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Once `is_cancelled` says so it stops, and nothing of
-/// the report is left. `on_drawing` is called now and then while the pages are drawn.
+/// Told while a report is made. `progress` may stay empty.
+struct ReportListener {
+  /// `total` is 0 where it is not known. Called by one thread at a time.
+  std::function<void(const std::string& step, std::size_t done, std::size_t total)> progress;
+  std::function<bool()> is_cancelled;
+};
+
+/// Judges the result and draws `<prefix>-report-cam.pdf` and `.html`. Where the listener cancels, nothing of the report is
+/// left.
 ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
-                        const std::function<bool()>& is_cancelled, const std::function<void()>& on_drawing = nullptr);
+                        const ReportListener& listener);
 
 /// Opens the HTML page with xdg-open where standard output is a terminal and there is a display.
 void showReport(const ReportFiles& files);

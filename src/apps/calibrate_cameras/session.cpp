@@ -16,10 +16,9 @@ void reportOn(const pipeline::CalibrationResult& result, const Inputs& inputs, c
   const UninterruptedSection leaves_nothing_behind;
   std::printf("Generating result report...\n");
   std::fflush(stdout);
-  console.startDrawing();
   setInterruptedStep("before the report was drawn");
-  const ReportFiles files =
-      writeReport(result, inputs, outputPrefix(arguments), isInterruptWaiting, [&console] { console.showDrawing(); });
+  const auto show = [&console](const auto& step, auto done, auto total) { console.showStep(step, done, total); };
+  const ReportFiles files = writeReport(result, inputs, outputPrefix(arguments), {show, isInterruptWaiting});
   if (files.html.empty() && isInterruptWaiting()) {
     return;
   }

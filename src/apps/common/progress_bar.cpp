@@ -11,6 +11,8 @@ constexpr std::chrono::seconds kLineInterval{2};  ///< a log needs no more
 constexpr std::size_t kLinesPerRun = 10;
 constexpr std::chrono::seconds kLongStep{2};  ///< shorter ones need no word
 
+constexpr const char* kClearLine = "\r\x1b[K";
+
 std::string twoDigits(long value) { return (value < 10 ? "0" : "") + std::to_string(value); }
 
 }  // namespace
@@ -45,8 +47,8 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
   }
   const std::chrono::duration<double> taken = Clock::now() - begin_;
   const double left_s = taken.count() / static_cast<double>(done) * static_cast<double>(total - done);
-  std::printf("%s  Progress %zu / %zu \t Time remaining: %s%s", is_terminal_ ? "\r" : "", done, total,
-              durationText(left_s).c_str(), is_terminal_ ? "   " : "\n");
+  std::printf("%s  Progress %zu / %zu \t Time remaining: %s%s", is_terminal_ ? kClearLine : "", done, total,
+              durationText(left_s).c_str(), is_terminal_ ? "" : "\n");
   std::fflush(stdout);
   is_drawn_ = is_terminal_;
   drawn_at_ = Clock::now();
@@ -60,7 +62,7 @@ void ProgressBar::showElapsed(const std::string& what) {
     return;
   }
   const std::chrono::duration<double> taken = now - begin_;
-  std::printf("\r  %s: %s   ", what.c_str(), durationText(taken.count()).c_str());
+  std::printf("%s  %s: %s", kClearLine, what.c_str(), durationText(taken.count()).c_str());
   std::fflush(stdout);
   is_drawn_ = true;
   drawn_at_ = now;
@@ -68,7 +70,7 @@ void ProgressBar::showElapsed(const std::string& what) {
 
 void ProgressBar::clear() {
   if (is_drawn_) {
-    std::fputs("\r\x1b[K", stdout);
+    std::fputs(kClearLine, stdout);
     is_drawn_ = false;
   }
 }

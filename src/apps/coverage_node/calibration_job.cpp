@@ -25,6 +25,12 @@ constexpr std::chrono::milliseconds kProgressInterval{500};
 
 bool isStopping() { return !::ros::ok(); }
 
+void throwIfStopping() {
+  if (isStopping()) {
+    throw pipeline::Cancelled("the calibration was stopped");
+  }
+}
+
 /// By increasing stamp, as the cameras took them.
 void writeBag(const std::vector<KeptView>& views, const std::vector<std::string>& topics, const std::string& path) {
   std::vector<const EncodedImage*> images;
@@ -38,6 +44,7 @@ void writeBag(const std::vector<KeptView>& views, const std::vector<std::string>
   });
   ros::BagWriter bag(path);
   for (const EncodedImage* image : images) {
+    throwIfStopping();
     bag.writeImage(topics[static_cast<std::size_t>(image->camera_index)], image->stamp_ns, image->decode());
   }
   bag.close();
@@ -77,7 +84,9 @@ std::string resultText(const pipeline::CalibrationResult& result) {
 CalibrationJob::CalibrationJob(Arguments arguments, std::string command, JobListener listener)
     : arguments_(std::move(arguments)), command_(std::move(command)), listener_(std::move(listener)) {}
 
-CalibrationJob::~CalibrationJob() {
+CalibrationJob::~CalibrationJob() { wait(); }
+
+void CalibrationJob::wait() {
   if (thread_.joinable()) {
     thread_.join();
   }
@@ -87,14 +96,12 @@ bool CalibrationJob::start(std::vector<KeptView> views) {
   if (is_running_.exchange(true)) {
     return false;
   }
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  wait();
   thread_ = std::thread([this, views = std::move(views)] {
     try {
       run(views);
     } catch (const pipeline::Cancelled&) {  // the node ends, and with it what listener_ has
-      printWarning("the calibration was stopped; its views are in " + arguments_.recording + ", no other file was written");
+      printWarning("the calibration was stopped; " + finished_);
     } catch (const std::exception& error) {
       listener_.progress(std::string("failed: ") + error.what());
     }
@@ -105,18 +112,22 @@ bool CalibrationJob::start(std::vector<KeptView> views) {
 
 void CalibrationJob::run(const std::vector<KeptView>& views) {
   const Tell& tell = listener_.progress;
+  finished_ = "its views were not written";
   checkWritable(outputPrefix(arguments_));
   writeBag(views, arguments_.topics, arguments_.recording);
   num_written_ = views.size();
+  finished_ = "its views are in " + arguments_.recording + ", no other file was written";
   tell("wrote " + std::to_string(views.size()) + " views to " + arguments_.recording);
   const Inputs inputs = openInputs(arguments_, [&](const std::string& text) { tell("warning: " + text); });
   const pipeline::CalibrationResult result = calibrate(inputs, pipelineListener(tell));
   const OutputFiles files = writeOutputs(result, arguments_, inputs.options, command_);
+  finished_ = "its result is in " + files.camchain + " and the files beside it, without a report";
   listener_.camchain(io::camchainText(io::camchain(result)));
   if (arguments_.report) {
     tell("report");
-    const ReportFiles report = writeReport(result, inputs, outputPrefix(arguments_), isStopping);
-    if (!report.failure.empty() && !isStopping()) {
+    const ReportFiles report = writeReport(result, inputs, outputPrefix(arguments_), {nullptr, isStopping});
+    if (!report.failure.empty()) {
+      throwIfStopping();
       tell("warning: no report: " + report.failure);
     }
   }

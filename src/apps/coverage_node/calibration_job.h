@@ -23,12 +23,15 @@ class CalibrationJob {
  public:
   /// `arguments`, `command`: of calibrate_cameras, with the bag to write as recording.
   CalibrationJob(Arguments arguments, std::string command, JobListener listener);
-  ~CalibrationJob();  ///< waits; the node's end stops the calibration
+  ~CalibrationJob();  ///< waits
   CalibrationJob(const CalibrationJob&) = delete;
   CalibrationJob& operator=(const CalibrationJob&) = delete;
 
   /// False, and nothing happens, while the last one runs.
   bool start(std::vector<guidance::KeptView> views);
+
+  /// Until nothing runs. Once the node ends that is soon: the calibration stops.
+  void wait();
 
   /// Views in the bag that was written last.
   std::size_t numWritten() const { return num_written_; }
@@ -39,6 +42,7 @@ class CalibrationJob {
   Arguments arguments_;
   std::string command_;
   JobListener listener_;
+  std::string finished_;  ///< what there is of the files, where it is stopped
   std::atomic<bool> is_running_{false};
   std::atomic<std::size_t> num_written_{0};
   std::thread thread_;

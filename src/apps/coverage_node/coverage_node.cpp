@@ -78,6 +78,7 @@ void CoverageNode::run() {
       publishDiagnostics();
     }
   }
+  job_.wait();
   if (job_.numWritten() < guide_.kept().size()) {
     printWarning("stopped with " + std::to_string(guide_.kept().size()) + " views, of which " +
                  std::to_string(job_.numWritten()) + " were written; ~calibrate writes them");
