@@ -8,7 +8,9 @@
 namespace tartan_calib::detection {
 namespace {
 
-constexpr int kSpare_px = 2;  // of a sample's weights beside its pixel
+constexpr double kPixelSpread_px2 = 1.0 / 12.0;  // a square of side 1
+constexpr double kSplineSpread_px2 = 1.0 / 3.0;  // four such squares, convolved
+constexpr int kSpare_px = 2;                     // of a sample's weights beside its pixel
 
 /// Half of a Gaussian whose sum is 1, the middle first.
 std::vector<float> halfGaussian(double sigma_px) {
@@ -95,6 +97,7 @@ Patch::Patch(const cv::Mat& gray, const Eigen::Vector2d& centre, double reach_px
   const cv::Point corner(static_cast<int>(std::lround(centre.x())) - reach,
                          static_cast<int>(std::lround(centre.y())) - reach);
   cols_ = rows_ = 2 * reach + 1;
+  spread_px2_ = kPixelSpread_px2 + kSplineSpread_px2 + blur_px * blur_px;
   origin_ = Eigen::Vector2f(static_cast<float>(corner.x), static_cast<float>(corner.y));
   values_ = cutOut(gray, corner, cols_);
   blur(half_blur_, cols_, values_);

@@ -41,6 +41,9 @@ class Patch {
   /// True if `at` is possible for all points within `reach_px` of `px` along each axis.
   bool holds(const Eigen::Vector2d& px, double reach_px) const;
 
+  /// Second moment, along an axis, of what a sample averages light over: pixel, spline and blur [px^2].
+  double spread_px2() const { return spread_px2_; }
+
   /// Variance of a sample where that of a pixel is 1.
   double noiseGain(const Eigen::Vector2f& px) const;
 
@@ -79,6 +82,7 @@ class Patch {
 
   int cols_ = 0;
   int rows_ = 0;
+  double spread_px2_ = 0.0;
   Eigen::Vector2f origin_ = Eigen::Vector2f::Zero();
   std::vector<float> half_blur_;      ///< half of the kernel of the blur, the middle first
   Eigen::Matrix4f blur_correlation_;  ///< of the noise of four pixels in a row after the blur, along one axis

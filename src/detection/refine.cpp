@@ -106,7 +106,10 @@ Attempt conclude(const Patch& patch, const SampleSet& samples, const NormalEquat
                  const Eigen::Vector2d& centre_px) {
   const Eigen::Vector2f centre = centre_px.cast<float>();
   const Eigen::Matrix4d inverse = normal.matrix.cast<double>().inverse();
-  const Eigen::Matrix<float, 2, 4> gain = inverse.topRows<2>().cast<float>();
+  // Light that rises by s moves what a blur of variance v shows of the board by -v s, for the brighter side counts more.
+  Eigen::Matrix<double, 2, 4> from_unknowns;
+  from_unknowns << Eigen::Matrix2d::Identity(), patch.spread_px2() * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix<float, 2, 4> gain = (from_unknowns * inverse).cast<float>();
   Patch::PixelWeights weights(patch);
   double residual_gain = 0.0;  // of the sum of squared residuals, where the variance of a pixel is 1
   for (std::size_t k = 0; k < samples.pairs.size(); ++k) {
@@ -124,7 +127,7 @@ Attempt conclude(const Patch& patch, const SampleSet& samples, const NormalEquat
   Attempt attempt;
   attempt.freedom = independent - kNumUnknowns;
   attempt.variance = std::max(kRoundingVariance, left / residual_gain * independent / attempt.freedom);
-  attempt.corner.px = centre_px;
+  attempt.corner.px = centre_px + from_unknowns.rightCols<2>() * normal.solution.tail<2>();
   attempt.corner.cov_px2 = attempt.variance * weights.covariance();
   attempt.contrast = windowContrast(values);
   attempt.corner.residual_ratio = std::sqrt(left / num_pairs) / std::max(attempt.contrast, 1e-6);
