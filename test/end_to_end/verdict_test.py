@@ -11,6 +11,7 @@ from programs import PROGRAMS, Recordings, run_command
 
 PINHOLE = ["--lens", "pinhole80", "--models", "pinhole-radtan", "--resolution", "320x256", "--views", 24]
 FISHEYE = ["--lens", "fisheye190", "--resolution", "320x256", "--views", 24]
+NARROW = ["--lens", "pinhole70", "--resolution", "320x256"]
 RIG = [*FISHEYE, "--cameras", 2, "--yaw", 8]
 
 
@@ -120,6 +121,33 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         rms, = self.reason(self.pinhole_verdict(self.pinhole, target), r"usable: cam0: large residuals \(rms ([\d.]+) px\)")
         self.assertGreater(rms, 0.6)
 
+    def test_sizes_that_are_far_from_the_boards(self):
+        target = self.recordings.path / "far-target.yaml"
+        target.write_text(re.sub("tagSpacing: .*", "tagSpacing: 0.6", self.recordings.target("pinhole").read_text()))
+        verdict = self.pinhole_verdict(self.pinhole, target)
+        self.assertEqual(verdict[0], "repeat")
+        rms, = self.reason(verdict, r"repeat: cam0: large residuals \(rms ([\d.]+) px\)")
+        self.assertGreater(rms, 1.5)
+
+    def test_few_flat_views_of_a_model_with_more_parameters_than_they_tell(self):
+        bag = self.recordings.simulate("open", *NARROW, "--views", 6, "--reach", 0.1, "--tilt", 3)
+        verdict = self.verdict(bag, ["ds-none"])
+        self.assertEqual(verdict[0], "repeat")
+        self.reason(verdict, r"repeat: the views do not determine cam0 projection\[0\], cam0 projection\[2\], cam0 projection\[3\]: ")
+
+    def test_lens_that_is_at_the_end_of_what_the_model_can_be(self):
+        verdict = self.verdict(self.recordings.simulate("bound", *NARROW, "--views", 24), ["ds-none"])
+        self.assertEqual(verdict[0], "repeat")
+        self.reason(verdict, r"repeat: the views do not determine cam0 projection\[1\] \(at its bound\): ")
+
+    def test_models_and_delays_that_fit_together_at_no_point(self):
+        bag = self.recordings.simulate("endless", *RIG[:4], "--cameras", 4, "--views", 5, "--yaw", 8, "--reach", 0.1, "--tilt", 5,
+                                       "--delay", 4)
+        verdict = self.verdict(bag, ["eucm-none", "eucm-none", "pinhole-radtan", "ds-none"])
+        self.assertEqual(verdict[0], "repeat")
+        iterations, = self.reason(verdict, r"repeat: the solver did not converge within (\d+) iterations")
+        self.assertGreater(iterations, 100)
+
     def test_frames_that_a_rolling_shutter_bent(self):
         changed = [(topic, sheared(image, 12) if index % 6 == 0 else image, time)
                    for index, (topic, image, time) in enumerate(messages(self.pinhole))]
@@ -151,6 +179,13 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertAlmostEqual(delay, 4.0, delta=0.4)
         self.assertEqual(stamps, 0.0)
         self.assertAlmostEqual(motion, 0.8, delta=0.15)  # 0.2 px/ms over all true corners
+
+    def test_cameras_that_are_far_from_sync(self):
+        verdict = self.verdict(self.recordings.simulate("later", *RIG, "--delay", 15), ["ds-none", "ds-none"])
+        self.assertEqual(verdict[0], "repeat")
+        delay, motion = self.reason(verdict, r"repeat: cam1: stereo pairs ([\d.]+) ms apart .*, in which the board moves by ([\d.]+) px")
+        self.assertAlmostEqual(delay, 15.0, delta=1.0)
+        self.assertGreater(motion, 1.0)
 
     def test_cameras_that_share_few_views(self):
         everything = messages(self.rig)
