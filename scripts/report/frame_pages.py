@@ -4,7 +4,7 @@ import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
-from style import (CYCLE, GRADES, GREY, ORANGE, RED, by_angle, equal_3d_axes, image_page, magnification, page, panels,
+from style import (CYCLE, GRADES, GREY, ORANGE, RED, equal_3d_axes, histogram, image_page, magnification, page, panels,
                    steps)
 
 WORST_LENGTH_RATIO = 0.012  # of the image's width, for most of the lines
@@ -178,11 +178,11 @@ def rounds_page(report, camera):
     bands = np.arange(0.0, max(other.max_polar_deg for other in report.cameras) + 10.0, 10.0)
     below = np.zeros(len(bands) - 1)
     for number in rounds:
-        counts = by_angle(camera.found.where(camera.found.round == number), bands)
+        counts = histogram(camera.found.polar_deg[camera.found.round == number], bands)
         steps(right, bands, counts, below, color=round_colour(number), label=f"round {number}: {counts.sum()}")
         below += counts
     right.set_xlim(0, bands[-1])
-    right.set_ylim(0, 1.05 * max(1, *(by_angle(other.found, bands).max() for other in report.cameras)))
+    right.set_ylim(0, 1.05 * max(1, *(histogram(other.found.polar_deg, bands).max() for other in report.cameras)))
     right.set_title("all views")
     right.set_xlabel("angle from the optical axis (deg)")
     right.set_ylabel("corners in 10 degrees")

@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib.colors import LogNorm
-from style import (AMOUNTS, BLUE, ORANGE, RED, cell_counts, cells, colour_bar, draw_frames, equal_3d_axes, image_axes,
+from style import (AMOUNTS, BLUE, ORANGE, RED, cell_counts, cells, colour_bar, draw_frames, equal_3d_axes, histogram, image_axes,
                    image_extent, image_page, page, panels, steps, view_points)
 
 LINES_PER_PAGE = 35
@@ -123,9 +123,9 @@ def error_over_angle(report, camera, kind):
     cells(left, np.ma.masked_equal(counts, 0), extent, cmap=AMOUNTS, norm=LogNorm(1.0, most))
     left.set_title(beyond(residual_lengths(camera) > limit))
     left.set_ylabel("reprojection error (px)")
-    steps(right, bins, np.histogram(angles_of(camera), bins)[0], color=BLUE)
+    steps(right, bins, histogram(angles_of(camera), bins), color=BLUE)
     right.set_xlim(bins[0], bins[-1])
-    right.set_ylim(0, 1.05 * max(max(np.histogram(other, bins)[0].max() for other in angles_of_all), 1))
+    right.set_ylim(0, 1.05 * max(max(histogram(other, bins).max() for other in angles_of_all), 1))
     right.set_ylabel("corners")
     for axes in (left, right):
         axes.set_xlabel(f"{kind} angle (deg)")

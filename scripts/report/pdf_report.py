@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import quality_pages
 from matplotlib.backends.backend_pdf import PdfPages
 
-RASTER_DPI = 130  # of points too many for vectors
+RASTER_DPI = 130  # of the pictures
 
 
 def parts(report):

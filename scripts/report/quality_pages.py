@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import NullLocator
-from style import (AMOUNTS, BLUE, CYCLE, GREY, ORANGE, RED, arrows, by_angle, cell_counts, cells, colour_bar, image_axes,
+from style import (AMOUNTS, BLUE, CYCLE, GREY, ORANGE, RED, arrows, cell_counts, cells, colour_bar, histogram, image_axes,
                    image_extent, image_page, legend_above, magnification, page, panels, steps)
 
 BAND_DEG = 5.0
@@ -22,6 +22,9 @@ def shared_max(report, values_of):
 
 
 def coverage_page(report, camera):
+    def expected(other):
+        return np.append(other.found.polar_deg, other.missed.polar_deg)
+
     title = f"{camera.name}: coverage"
     figure = image_page(title, "Missed: the solution expects the corner in the image, but nothing was found there: hidden, blurred, "
                                "too small, or outside of the lens's image circle. Dashed: the farthest corner, at "
@@ -33,13 +36,12 @@ def coverage_page(report, camera):
         image = cells(axes, np.ma.masked_equal(coverage(corners, camera), 0), image_extent(camera), cmap=AMOUNTS, vmin=0, vmax=most)
         draw_ring(axes, camera)
     colour_bar(figure, image, [left, middle], "corners in a cell")
-    longest = shared_max(report, lambda other: np.append(other.found.polar_deg, other.missed.polar_deg))
-    bands = np.arange(0.0, longest + BAND_DEG, BAND_DEG)
-    found, missed = by_angle(camera.found, bands), by_angle(camera.missed, bands)
+    bands = np.arange(0.0, shared_max(report, expected) + BAND_DEG, BAND_DEG)
+    found, missed = histogram(camera.found.polar_deg, bands), histogram(camera.missed.polar_deg, bands)
     steps(right, bands, found, color=BLUE, label="found")
     steps(right, bands, missed, found, facecolor=ORANGE, edgecolor="white", hatch="//", label="missed")
     right.set_xlim(0, bands[-1])
-    right.set_ylim(0, 1.05 * shared_max(report, lambda other: by_angle(other.found, bands) + by_angle(other.missed, bands)))
+    right.set_ylim(0, 1.05 * shared_max(report, lambda other: histogram(expected(other), bands)))
     right.set_xlabel("angle from the optical axis (deg)")
     right.set_ylabel(f"corners in {BAND_DEG:g} degrees")
     legend_above(right)
@@ -105,7 +107,7 @@ def histogram_page(report, camera):
     width = robust_width(camera)
     for axes, reach in ((left, 5.0 * max(robust_width(other) for other in report.cameras)), (right, limit)):
         edges = np.linspace(-reach, reach, 81)
-        of_x, of_y = (np.histogram(values, edges)[0] for values in (camera.used.du_px, camera.used.dv_px))
+        of_x, of_y = (histogram(values, edges) for values in (camera.used.du_px, camera.used.dv_px))
         steps(axes, edges, of_x, color=BLUE, label="x")
         steps(axes, edges, of_y, of_x, color=ORANGE, label="y")
         middle = np.linspace(-reach, reach, 400)
