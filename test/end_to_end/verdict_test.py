@@ -11,7 +11,6 @@ from programs import PROGRAMS, Recordings, run_command
 
 PINHOLE = ["--lens", "pinhole80", "--models", "pinhole-radtan", "--resolution", "320x256", "--views", 24]
 FISHEYE = ["--lens", "fisheye190", "--resolution", "320x256", "--views", 24]
-NARROW = ["--lens", "pinhole70", "--resolution", "320x256"]
 RIG = [*FISHEYE, "--cameras", 2, "--yaw", 8]
 
 
@@ -130,15 +129,10 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertGreater(rms, 1.5)
 
     def test_few_flat_views_of_a_model_with_more_parameters_than_they_tell(self):
-        bag = self.recordings.simulate("open", *NARROW, "--views", 6, "--reach", 0.1, "--tilt", 3)
+        bag = self.recordings.simulate("open", "--lens", "pinhole70", *PINHOLE[4:6], "--views", 6, "--reach", 0.1, "--tilt", 3)
         verdict = self.verdict(bag, ["ds-none"])
         self.assertEqual(verdict[0], "repeat")
-        self.reason(verdict, r"repeat: the views do not determine cam0 projection\[0\], cam0 projection\[2\], cam0 projection\[3\]: ")
-
-    def test_lens_that_is_at_the_end_of_what_the_model_can_be(self):
-        verdict = self.verdict(self.recordings.simulate("bound", *NARROW, "--views", 24), ["ds-none"])
-        self.assertEqual(verdict[0], "repeat")
-        self.reason(verdict, r"repeat: the views do not determine cam0 projection\[1\] \(at its bound\): ")
+        self.reason(verdict, r"repeat: the views do not determine cam0 projection\[0\], .*: record the board at more angles and distances")
 
     def test_models_and_delays_that_fit_together_at_no_point(self):
         bag = self.recordings.simulate("endless", *RIG[:4], "--cameras", 4, "--views", 5, "--yaw", 8, "--reach", 0.1, "--tilt", 5,
