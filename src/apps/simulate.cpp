@@ -14,14 +14,11 @@ using namespace tartan_calib::apps;
 
 SimulateSummary render(const SimulateOptions& options) {
   ProgressBar bar(isatty(STDOUT_FILENO) != 0);
-  const UninterruptedSection all_or_nothing;
   SimulateSummary summary = simulate(options, [&bar](std::size_t done, std::size_t total) {
     bar.show(done, total);
     setItemsDone(done, total, "views");
-    throwIfInterrupted();
   });
   bar.clear();
-  setFinishedWork(options.output_bag + options.output_dir + " and its truth are written");
   return summary;
 }
 

@@ -12,6 +12,7 @@
 #include "calibrate_cameras/session.h"
 #include "common/interrupt.h"
 #include "common/program.h"
+#include "common/progress_bar.h"
 #include "tartan_calib/io/atomic_file.h"
 #include "tartan_calib/io/camchain.h"
 #include "tartan_calib/io/results_text.h"
@@ -60,8 +61,11 @@ apps::SessionHooks hooksFor(const apps::TartanCommand& command) {
     const std::string& folder = command.debug_image_dir.empty() ? command.save_dir : command.debug_image_dir;
     std::printf("Writing the pictures of --debug-modes to %s\n", folder.c_str());
     std::fflush(stdout);
+    apps::ProgressBar bar(isatty(STDOUT_FILENO) != 0);
     apps::setInterruptedStep("in the pictures of --debug-modes");
-    apps::writeDebugPictures(inputs, result, command.debug_modes, folder);
+    apps::writeDebugPictures(inputs, result, command.debug_modes, folder,
+                             [&bar](std::size_t done, std::size_t total) { bar.show(done, total); });
+    bar.clear();
   };
   return hooks;
 }

@@ -1,6 +1,7 @@
 #include "tartan_calib/simulation/renderer.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <future>
@@ -63,6 +64,11 @@ void measureMotion(std::vector<TrueCorner>& corners, const Scene& scene, const S
   }
 }
 
+struct StopAtEnd {
+  std::atomic<bool>& is_stopped;
+  ~StopAtEnd() { is_stopped = true; }
+};
+
 }  // namespace
 
 class Renderer::Studio {
@@ -115,11 +121,11 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 const Scene& Renderer::scene() const { return studio_->scene(); }
 
-RenderedFrame Renderer::render(int frame_index) const {
+RenderedFrame Renderer::render(int frame_index, const std::atomic<bool>& is_stopped) const {
   const auto index = static_cast<std::size_t>(frame_index);
   RenderedFrame frame;
   frame.stamp_ns = scene().frames.at(index).stamp_ns;
-  for (std::size_t camera = 0; camera < scene().cameras.size(); ++camera) {
+  for (std::size_t camera = 0; camera < scene().cameras.size() && !is_stopped; ++camera) {
     frame.views.push_back(studio_->view(index, camera));
   }
   return frame;
@@ -129,14 +135,23 @@ cv::Mat1f Renderer::renderLight(int frame_index, int camera_index) const {
   return studio_->expose(static_cast<std::size_t>(frame_index), static_cast<std::size_t>(camera_index)).light;
 }
 
-void renderAll(const Renderer& renderer, int num_threads, const std::function<void(const RenderedFrame&)>& receive) {
+void renderAll(const Renderer& renderer, int num_threads, const std::function<void(const RenderedFrame&)>& receive,
+               const std::function<void()>& waiting) {
+  constexpr std::chrono::milliseconds kPoll{50};
   const int num_frames = static_cast<int>(renderer.scene().frames.size());
+  std::atomic<bool> is_stopped = false;
   std::deque<std::future<RenderedFrame>> pending;
+  const StopAtEnd stops_before_pending_is_awaited{is_stopped};
   for (int next = 0; next < num_frames || !pending.empty();) {
     while (next < num_frames && static_cast<int>(pending.size()) < std::max(1, num_threads)) {
-      pending.push_back(std::async(std::launch::async, [&renderer, next] { return renderer.render(next); }));
+      pending.push_back(std::async(std::launch::async, [&, next] { return renderer.render(next, is_stopped); }));
       ++next;
     }
+    do {
+      if (waiting) {
+        waiting();
+      }
+    } while (pending.front().wait_for(kPoll) != std::future_status::ready);
     const RenderedFrame frame = pending.front().get();
     pending.pop_front();
     receive(frame);

@@ -50,7 +50,10 @@ def start_on_terminal(test, program, *arguments):
 
 def shows_bar(terminal):
     """Whether the program has drawn its bar since the last call."""
-    return select.select([terminal], [], [], 0)[0] and b"Time remaining" in os.read(terminal, 4096)
+    try:
+        return select.select([terminal], [], [], 0)[0] and b"Time remaining" in os.read(terminal, 4096)
+    except OSError:  # the program has ended
+        return False
 
 
 class Interrupted:

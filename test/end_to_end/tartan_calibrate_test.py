@@ -8,7 +8,7 @@ import zlib
 
 import yaml
 
-from programs import Recordings, calibrate, run
+from programs import Recordings, assert_stopped, calibrate, interrupt_after, interrupt_when, run, start
 
 FALSE_PX = 2.0
 
@@ -54,9 +54,9 @@ class WideRecording(unittest.TestCase):
         cls.target = cls.recordings.target("wide")
         cls.truth = corners_in(cls.folder / "wide-truth-corners.csv")
 
-    def tartan_calibrate(self, save_dir, *flags):
-        return run("tartan_calibrate", "--bag", self.bag, "--target", self.target, "--topics", "/cam0/image_raw", "--models",
-                   "ds-none", "--save_dir", save_dir, "--no-report", *flags)
+    def tartan_calibrate(self, save_dir, *flags, runner=run):
+        return runner("tartan_calibrate", "--bag", self.bag, "--target", self.target, "--topics", "/cam0/image_raw", "--models",
+                      "ds-none", "--save_dir", save_dir, "--no-report", *flags)
 
     def score(self, file):
         """(found, false) of the corners of a file against the truth."""
@@ -95,6 +95,22 @@ class TartanCalibrate(WideRecording):
         self.assertNotEqual(first["intrinsics"], last["intrinsics"])
         self.assertIn("Started tartan calib with ", finished.stdout)
         self.assertIn("Ended tartan calib with ", finished.stdout)
+
+    def test_ctrl_c_in_a_round_keeps_what_detection_alone_gave(self):
+        folder = self.folder / "stopped"
+        stopped = interrupt_after("Started tartan calib", self.tartan_calibrate(folder, "--log_dest", "rig", runner=start))
+        files = [folder / "rig0-camchain.yaml", folder / "rig0-results-cam.txt"]
+        assert_stopped(self, stopped, f"; {files[0]} and {files[1]} are written")
+        self.assertEqual(sorted(folder.iterdir()), files)
+
+    def test_ctrl_c_in_the_debug_pictures_keeps_the_result(self):
+        folder = self.folder / "pictures_stopped"
+        process = self.tartan_calibrate(folder, "--log_dest", "rig", "--max-rounds", 0, "--debug-modes", "originalprojection",
+                                        runner=start)
+        stopped = interrupt_when(lambda: len(list(folder.glob("frame_*.png"))) > 2, process)
+        assert_stopped(self, stopped, "in the pictures of --debug-modes; the results above are written and complete")
+        self.assertTrue((folder / "rig1-camchain.yaml").exists())
+        self.assertEqual({file.suffix for file in folder.iterdir()}, {".yaml", ".txt", ".png"})
 
     def test_flags_without_effect_say_why(self):
         finished = self.tartan_calibrate(self.folder / "noted", "--force_all", "--polar_setting", 1, "--max-rounds", 0)

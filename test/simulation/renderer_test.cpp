@@ -90,6 +90,14 @@ TEST(Renderer, handsFramesOverInOrderAndPassesOnWhatTheReceiverThrows) {
                std::runtime_error);
 }
 
+TEST(Renderer, beginsNoFurtherViewOnceStopped) {
+  const Renderer renderer(smallScene(3));
+  const std::atomic<bool> is_stopped = true;
+  EXPECT_TRUE(renderer.render(0, is_stopped).views.empty());
+  const auto receive = [](const RenderedFrame& /*frame*/) { FAIL() << "the wait for the first frame threw"; };
+  EXPECT_THROW(renderAll(renderer, 1, receive, [] { throw std::runtime_error("stopped"); }), std::runtime_error);
+}
+
 TEST(Renderer, projectsCornersThroughEachCameraOfTheRig) {
   const Renderer renderer(smallScene(3));
   const Scene& scene = renderer.scene();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -38,8 +39,8 @@ class Renderer {
 
   const Scene& scene() const;
 
-  /// May be called from several threads.
-  RenderedFrame render(int frame_index) const;
+  /// May be called from several threads. Once `is_stopped`, frames lack views.
+  RenderedFrame render(int frame_index, const std::atomic<bool>& is_stopped = false) const;
 
   /// The light of one camera's picture before noise and rounding, in grey levels.
   cv::Mat1f renderLight(int frame_index, int camera_index) const;
@@ -49,7 +50,9 @@ class Renderer {
   std::unique_ptr<const Studio> studio_;
 };
 
-/// Renders all frames with `num_threads` and hands them over in order, on the calling thread.
-void renderAll(const Renderer& renderer, int num_threads, const std::function<void(const RenderedFrame&)>& receive);
+/// Renders all frames with `num_threads` and hands them over in order, on the calling thread. `waiting`, where there is one,
+/// is called before each and several times a second. Where one of the two throws, no further view is begun.
+void renderAll(const Renderer& renderer, int num_threads, const std::function<void(const RenderedFrame&)>& receive,
+               const std::function<void()>& waiting = {});
 
 }  // namespace tartan_calib::simulation

@@ -6,6 +6,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "common/interrupt.h"
 #include "simulate/recording_writer.h"
 #include "simulate/truth.h"
 #include "tartan_calib/io/target_yaml.h"
@@ -78,6 +79,7 @@ simulation::Scene makeScene(const SimulateOptions& options) {
 
 SimulateSummary simulate(const SimulateOptions& options, const ProgressCall& progress) {
   const simulation::Renderer renderer(makeScene(options));
+  const UninterruptedSection all_or_nothing;
   const std::unique_ptr<RecordingWriter> writer =
       options.output_bag.empty() ? makeFolderWriter(options.output_dir) : makeBagWriter(options.output_bag);
   Truth truth(renderer.scene());
@@ -91,18 +93,20 @@ SimulateSummary simulate(const SimulateOptions& options, const ProgressCall& pro
   };
   tell();
   cv::setNumThreads(1);  // threads work on frames
-  simulation::renderAll(renderer, numThreads(options.num_threads), [&](const simulation::RenderedFrame& frame) {
+  const auto receive = [&](const simulation::RenderedFrame& frame) {
     writer->write(frame);
     truth.add(frame);
     summary.num_images += frame.views.size();
     ++num_rendered;
     tell();
-  });
+  };
+  simulation::renderAll(renderer, numThreads(options.num_threads), receive, throwIfInterrupted);
   summary.base = truthBase(options);
   summary.num_corners = truth.numCorners();
   summary.num_visible_corners = truth.numVisibleCorners();
   truth.save(summary.base);
   writer->finish();
+  setFinishedWork(options.output_bag + options.output_dir + " and its truth are written");
   return summary;
 }
 

@@ -19,8 +19,8 @@ struct SimulateSummary {
 /// The scene that the options describe. Throws InputError.
 simulation::Scene makeScene(const SimulateOptions& options);
 
-/// Renders it and writes recording and truth; the recording appears last, when everything else is there. Where `progress`,
-/// told after every view, throws, nothing is left behind.
+/// Renders it and writes recording and truth; the recording appears last, when everything else is there. Where it is
+/// interrupted nothing is left behind. `progress` is told of the views.
 SimulateSummary simulate(const SimulateOptions& options, const ProgressCall& progress = {});
 
 }  // namespace tartan_calib::apps

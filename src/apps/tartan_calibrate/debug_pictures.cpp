@@ -81,7 +81,7 @@ class CameraPictures {
     }
   }
 
-  void write(const std::vector<std::string>& modes) const {
+  void write(const std::vector<std::string>& modes, const ProgressCall& progress) const {
     const auto has = [&modes](const char* mode) { return std::find(modes.begin(), modes.end(), mode) != modes.end(); };
     if (has("reprojectionpoints")) {
       writeAllPoints();
@@ -93,16 +93,18 @@ class CameraPictures {
       writeViewCloud();
     }
     if (has("originalprojection") || has("pinholeprojection") || has("individualprojections")) {
-      writeImages(has("originalprojection"), has("pinholeprojection"), has("individualprojections"));
+      writeImages(has("originalprojection"), has("pinholeprojection"), has("individualprojections"), progress);
     }
   }
 
  private:
-  void writeImages(bool original, bool cross, bool individual) const {
+  void writeImages(bool original, bool cross, bool individual, const ProgressCall& progress) const {
     const std::vector<pipeline::VirtualView> views = viewsOf(individual ? pinholes_ : Pinholes());
     const std::vector<pipeline::VirtualView> faces = viewsOf(cross ? crossFaces() : Pinholes());
     const pipeline::ImageSource next_image = inputs_.streams[camera_index_].open();
+    std::size_t done = 0;
     while (const auto image = next_image()) {
+      progress(done++, inputs_.streams[camera_index_].num_images);
       const CameraView* seen = seenIn(image->stamp_ns);
       const cv::Mat gray = seen == nullptr ? cv::Mat() : loaded(*image);
       if (gray.cols != camera_.width || gray.rows != camera_.height) {
@@ -275,10 +277,10 @@ class CameraPictures {
 }  // namespace
 
 void writeDebugPictures(const Inputs& inputs, const pipeline::CalibrationResult& result,
-                        const std::vector<std::string>& modes, const std::string& folder) {
+                        const std::vector<std::string>& modes, const std::string& folder, const ProgressCall& progress) {
   for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     const fs::path own = result.cameras.size() > 1 ? fs::path(folder) / cameraName(i) : fs::path(folder);
-    CameraPictures(inputs, result, i, own).write(modes);
+    CameraPictures(inputs, result, i, own).write(modes, progress);
   }
 }
 
