@@ -114,7 +114,7 @@ void Console::showStep(const std::string& step, std::size_t done, std::size_t to
     bar_.show(0, 0);
     step_ = step;
   }
-  if (done > 0 && total > 0) {
+  if (total > 0) {
     bar_.show(done, total);
   } else {
     bar_.showElapsed(step);
