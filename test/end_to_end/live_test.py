@@ -51,21 +51,21 @@ class LiveNodes(unittest.TestCase):
         self.addCleanup(process.terminate)
         return process
 
-    def node_with_views(self, prefix):
-        """A coverage node that was shown the recording, and the environment of its master."""
+    def node_with_views(self, recording, prefix):
+        """A coverage node that was shown a recording, and the environment of its master."""
         port = free_port()
         environment = {**self.environment, "ROS_MASTER_URI": f"http://localhost:{port}"}
         master = self.start(f"rosmaster --core -p {port}", environment)
         while not run_in_workspace("rosparam list", env=environment).stdout:
             self.assertIsNone(master.poll())
         node = self.start(f"stdbuf -oL {PROGRAMS / 'coverage_node'} _topics:='/cam0/image_raw /cam1/image_raw' _models:='ds-none ds-none' "
-                          f"_target:={self.recordings.target('live')} _output:={prefix}", environment)
-        played = run_in_workspace(f"rosbag play --quiet --wait-for-subscribers --rate 4 {self.folder}/live.bag", env=environment)
+                          f"_target:={self.recordings.target(recording)} _output:={prefix}", environment)
+        played = run_in_workspace(f"rosbag play --quiet --wait-for-subscribers --rate 4 {self.folder}/{recording}.bag", env=environment)
         self.assertEqual(played.returncode, 0, played.stderr)
         return node, environment
 
     def test_ctrl_c_ends_a_calibration_and_leaves_whole_files_alone(self):
-        node, environment = self.node_with_views(self.folder / "stopped")
+        node, environment = self.node_with_views("live", self.folder / "stopped")
         answer = run_in_workspace("rosservice call --wait /coverage_node/calibrate", env=environment)
         self.assertIn("success: True", answer.stdout)
         stopped = interrupt_after("wrote", node)
@@ -73,7 +73,9 @@ class LiveNodes(unittest.TestCase):
         self.assertEqual([file.name for file in self.folder.glob("stopped*")], ["stopped.bag"])
 
     def test_ctrl_c_while_the_views_are_written_leaves_no_bag(self):
-        node, environment = self.node_with_views(self.folder / "unwritten")
+        # ROS takes a tenth of a second to tell of a signal; the views of large images take longer to write.
+        self.recordings.simulate("large", "--cameras", 2, "--views", 24, "--resolution", "1600x1280")
+        node, environment = self.node_with_views("large", self.folder / "unwritten")
         self.start("rosservice call --wait /coverage_node/calibrate", environment)
         stopped = interrupt_when((self.folder / "unwritten.bag.partial").exists, node)
         assert_stopped(self, stopped, "of which 0 were written; ~calibrate writes them", returncode=0)
