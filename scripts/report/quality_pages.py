@@ -185,20 +185,29 @@ def curves_page(report):
             axes.plot(angle[known], values[known], color=colour, linewidth=2.2, label=f"{camera.name}, {camera.model}")
             axes.plot(camera.max_polar_deg, np.interp(camera.max_polar_deg, angle, values), "|", color=colour, markersize=22,
                       markeredgewidth=2)
-    angle = np.linspace(0, 89, 300)
-    scale = report.cameras[0].curve.radius_px[1] / np.radians(report.cameras[0].curve.angle_deg[1])
-    top = 1.05 * shared_max(report, lambda camera: np.interp(camera.reach_deg, camera.curve.angle_deg, camera.curve.radius_px))
-    left.plot(angle, scale * np.tan(np.radians(angle)), ":", color=GREY, label="without distortion (tan), as cam0")
-    left.plot([0, 180], [0, scale * np.pi], "--", color=GREY, linewidth=0.8, label="equidistant, as cam0")
+    draw_known_lenses(left, report)
     reach = shared_max(report, lambda camera: camera.reach_deg + 5.0)
     for axes, label in ((left, "radius in the image (px)"), (right, "image scale along the radius (px/rad)")):
         axes.set_xlim(0, reach)
         axes.set_xlabel("angle from the optical axis (deg)")
         axes.set_ylabel(label)
-    left.set_ylim(0, top)
+    left.set_ylim(0, 1.05 * shared_max(report, lambda camera: np.interp(camera.reach_deg, camera.curve.angle_deg,
+                                                                        camera.curve.radius_px)))
     right.set_ylim(0, 1.3 * shared_max(report, known_scale))
     left.legend(loc="lower right")
     yield title, figure
+
+
+def draw_known_lenses(axes, report):
+    """The curves of lenses that are as the first camera on the axis; a camera without corners has no curve."""
+    camera = next((camera for camera in report.cameras if len(camera.curve.angle_deg) > 1), None)
+    if camera is None:
+        return
+    scale, angle_rad = image_scale(camera)[0], np.radians(np.linspace(0, 180, 600))
+    below = angle_rad < 0.49 * np.pi
+    axes.plot(np.degrees(angle_rad[below]), scale * np.tan(angle_rad[below]), ":", color=GREY,
+              label=f"without distortion (tan), as {camera.name}")
+    axes.plot(np.degrees(angle_rad), scale * angle_rad, "--", color=GREY, linewidth=0.8, label=f"equidistant, as {camera.name}")
 
 
 def image_scale(camera):

@@ -108,6 +108,17 @@ class PagesOfManyCameras(unittest.TestCase):
             self.assertEqual(written.count("model"), 1)
             self.assert_readable(drawn)
 
+    def test_camera_that_lost_all_its_corners_costs_no_page(self):
+        report = self.report()
+        camera = report.cameras[0]
+        camera.found = camera.used = camera.rejected = camera.found.where(np.array([], dtype=int))
+        camera.curve.angle_deg, camera.curve.radius_px = np.zeros(1), np.zeros(1)
+        camera.statistics = {**camera.statistics, "views": 0, "corners": 0, "bands": []}
+        camera.radial_biases, camera.frames, camera.worst = [], [], []
+        camera.max_polar_deg = camera.reach_deg = 0.0
+        camera.median_difference_px = None
+        self.assertGreater(self.assert_readable(pdf_report.pages(report)), 15)
+
     def limits(self, page_of, report, axes_index, which):
         """Of one of the axes, on this page of every camera."""
         found = []
