@@ -93,9 +93,11 @@ void Console::onProgress(const pipeline::Progress& progress) {
   noteStep(progress);
   const bool has_images = progress.stage == pipeline::Stage::kDetect || progress.stage == pipeline::Stage::kRecover;
   if (!has_images) {
-    showStep(pipeline::stageName(progress.stage), 0, 0);
     if (progress.done == progress.total) {
       bar_.clear();
+      step_.clear();
+    } else {
+      showStep(pipeline::stageName(progress.stage), 0, 0);
     }
     return;
   }
