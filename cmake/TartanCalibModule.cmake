@@ -1,5 +1,5 @@
 # A module is a folder: include/tartan_calib/<name>, src/<name>, test/<name>, one static library tartan_calib_<name>
-# and, where test/<name> holds *_test.cpp files, one test executable <name>_test.
+# and, where there is a folder test/<name>, one test executable <name>_test.
 
 set(TARTAN_CALIB_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
@@ -50,9 +50,27 @@ function(tartan_calib_module name)
   endif()
 endfunction()
 
-# tartan_calib_tests(<name> <library>...): one executable from test/<name>/*_test.cpp, its cases known to ctest one by one.
+# tartan_calib_test_support([USES <module>...] [FOR <test executable>...]): test/support/*.cpp as a library, the scenes that
+# these tests look at.
+function(tartan_calib_test_support)
+  cmake_parse_arguments(ARG "" "" "USES;FOR" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/support/*.cpp)
+  add_library(tartan_calib_test_support STATIC EXCLUDE_FROM_ALL ${sources})
+  target_compile_options(tartan_calib_test_support PRIVATE ${TARTAN_CALIB_WARNINGS})
+  target_include_directories(tartan_calib_test_support PUBLIC ${PROJECT_SOURCE_DIR}/test)
+  foreach(module ${ARG_USES})
+    target_link_libraries(tartan_calib_test_support PUBLIC tartan_calib_${module})
+  endforeach()
+  foreach(test ${ARG_FOR})
+    if(TARGET ${test})
+      target_link_libraries(${test} PRIVATE tartan_calib_test_support)
+    endif()
+  endforeach()
+endfunction()
+
+# tartan_calib_tests(<name> <library>...): one executable from test/<name>/*.cpp, its cases known to ctest one by one.
 function(tartan_calib_tests name)
-  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/${name}/*_test.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/${name}/*.cpp)
   if(NOT tests)
     return()
   endif()

@@ -1,12 +1,11 @@
 #include "tartan_calib/calibration/compare.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "tartan_calib/error.h"
-#include "tartan_calib/geometry/rigid3.h"
+#include "tartan_calib/geometry/linear_solve.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -34,30 +33,28 @@ std::vector<PointSample> pointsOf(const camera::CameraModel& a, const std::vecto
 
 /// One Gauss-Newton step, xi in T <- exp(xi) T; without `moves` its translation stays zero. Points that b cannot project
 /// take no part.
-template <class Model>
-geometry::Vector6d motionStep(const Model& b, const std::vector<PointSample>& points, const geometry::Rigid3& T_b_a,
-                              bool moves) {
+geometry::Vector6d motionStep(const camera::CameraModel& b, const std::vector<PointSample>& points,
+                              const geometry::Rigid3& T_b_a, bool moves) {
   geometry::Matrix6d H = geometry::Matrix6d::Zero();
   geometry::Vector6d gradient = geometry::Vector6d::Zero();
   for (const PointSample& sample : points) {
     const Eigen::Vector3d p_b = T_b_a * sample.p_a;
-    Eigen::Vector2d px_b;
     camera::Matrix23d J_px_p;
-    if (!b.project(p_b, px_b, &J_px_p)) {
+    const auto px_b = camera::project(b, p_b, &J_px_p);
+    if (!px_b) {
       continue;
     }
     Eigen::Matrix<double, 2, 6> J_px_xi;
     J_px_xi << J_px_p, -J_px_p * geometry::hat(p_b);
     H += J_px_xi.transpose() * J_px_xi;
-    gradient += J_px_xi.transpose() * (px_b - sample.px_a);
+    gradient += J_px_xi.transpose() * (*px_b - sample.px_a);
   }
-  geometry::Vector6d xi = geometry::Vector6d::Zero();
-  if (moves) {
-    xi = -H.ldlt().solve(gradient);
-  } else {
-    xi.tail<3>() = -H.bottomRightCorner<3, 3>().ldlt().solve(gradient.tail<3>());
+  if (!moves) {
+    H.topRows<3>().setIdentity();
+    H.bottomLeftCorner<3, 3>().setZero();
+    gradient.head<3>().setZero();
   }
-  return xi;
+  return -geometry::solveTwist(H, gradient);
 }
 
 }  // namespace
@@ -67,8 +64,7 @@ ProjectionDifference compareProjections(const camera::CameraModel& a, const came
   const std::vector<PointSample> points = pointsOf(a, samples_px, distance_m.value_or(1.0));
   ProjectionDifference result;
   for (int step = 0; step < kMaxSteps && !points.empty(); ++step) {
-    const auto step_in = [&](const auto& model) { return motionStep(model, points, result.T_b_a, distance_m.has_value()); };
-    const geometry::Vector6d xi = std::visit(step_in, b);
+    const geometry::Vector6d xi = motionStep(b, points, result.T_b_a, distance_m.has_value());
     if (!xi.allFinite()) {
       break;
     }

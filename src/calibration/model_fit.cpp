@@ -1,8 +1,9 @@
 #include "model_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "tartan_calib/geometry/linear_solve.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -33,7 +34,7 @@ Eigen::VectorXd levenbergStep(const CameraModel& model, const std::vector<RayPix
   }
   const double floor = kMinDiagonal * H.diagonal().maxCoeff();
   H.diagonal() = (1.0 + damping) * H.diagonal().array() + floor;
-  return H.ldlt().solve(descent);
+  return geometry::solveSymmetric(H, descent);
 }
 
 CameraModel fit(CameraModel model, double focal_px, const std::vector<RayPixel>& pairs) {

@@ -1,12 +1,12 @@
 #include "tartan_calib/calibration/pose.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "robust.h"
+#include "tartan_calib/geometry/linear_solve.h"
 #include "tartan_calib/median.h"
 
 namespace tartan_calib::calibration {
@@ -164,7 +164,7 @@ geometry::Vector6d poseStep(const camera::Camera& camera, const std::vector<Sigh
     descent.noalias() += weighted.lazyProduct(residual_px);
   }
   H.diagonal() *= 1.0 + damping;
-  return H.ldlt().solve(descent);
+  return geometry::solveTwist(H, descent);
 }
 
 Rigid3 refinePose(const camera::Camera& camera, const std::vector<Sighting>& sightings, Rigid3 T_cam_target,
@@ -222,7 +222,7 @@ Rigid3 mirroredPose(const Rigid3& T_cam_target, const Eigen::Vector3d& centre_ta
   const Eigen::Vector3d sight = centre_cam.normalized();
   const Eigen::Vector3d normal = T_cam_target.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d mirrored = 2.0 * sight.dot(normal) * sight - normal;
-  const Eigen::Quaterniond R = Eigen::Quaterniond::FromTwoVectors(normal, mirrored) * T_cam_target.rotation;
+  const Eigen::Quaterniond R = geometry::rotationBetween(normal, mirrored) * T_cam_target.rotation;
   return Rigid3(R, centre_cam - R * centre_target);
 }
 

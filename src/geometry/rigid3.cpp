@@ -59,6 +59,19 @@ Eigen::Vector3d logRotation(const Eigen::Quaterniond& R) {
   return (2.0 * std::atan2(sine, w) / sine) * xyz;
 }
 
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  constexpr double kOpposite = 1e-8;  // twice the cosine of half the angle: the product of the directions is rounding
+  const Eigen::Vector3d a = from.normalized();
+  const Eigen::Vector3d b = to.normalized();
+  const double length = (a + b).norm();
+  if (length < kOpposite) {
+    const Eigen::Vector3d axis = a.unitOrthogonal();
+    return Eigen::Quaterniond(0.0, axis.x(), axis.y(), axis.z());
+  }
+  const Eigen::Vector3d v = a.cross(b) / length;
+  return Eigen::Quaterniond(0.5 * length, v.x(), v.y(), v.z()).normalized();
+}
+
 Eigen::Matrix3d leftJacobian(const Eigen::Vector3d& phi) {
   const double angle = phi.norm();
   const double angle2 = angle * angle;

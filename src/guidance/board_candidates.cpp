@@ -69,7 +69,7 @@ Rigid3 boardPose(const Board& board, const Place& place, double distance_m, Tilt
   Eigen::Matrix3d R_cam_facing;
   R_cam_facing << place.right, -place.down, -place.ray;
   const Eigen::Vector3d normal = -place.ray + std::tan(kTilt_rad) * tiltDirection(tilt, place);
-  const Eigen::Quaterniond R = Eigen::Quaterniond::FromTwoVectors(-place.ray, normal) * Eigen::Quaterniond(R_cam_facing);
+  const Eigen::Quaterniond R = geometry::rotationBetween(-place.ray, normal) * Eigen::Quaterniond(R_cam_facing);
   return Rigid3(R, distance_m * place.ray - R * board.centre);
 }
 

@@ -1,12 +1,12 @@
 #include "tartan_calib/report/camera_timing.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "board_motion.h"
+#include "tartan_calib/geometry/linear_solve.h"
 #include "tartan_calib/median.h"
 
 namespace tartan_calib::report {
@@ -14,19 +14,18 @@ namespace {
 
 constexpr double kNsPerMs = 1e6;
 
-using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 using Matrix2Xd = Eigen::Matrix<double, 2, Eigen::Dynamic>;
 
 /// Normal equations of one view's pose, of all corners.
 struct ViewEquations {
-  explicit ViewEquations(int num_shared) : H_pose_shared(Matrix6Xd::Zero(6, num_shared)) {}
+  explicit ViewEquations(int num_shared) : H_pose_shared(Eigen::MatrixXd::Zero(6, num_shared)) {}
 
   geometry::Matrix6d H = geometry::Matrix6d::Zero();
   geometry::Vector6d b = geometry::Vector6d::Zero();         ///< J' residual
   geometry::Matrix6d H_camera = geometry::Matrix6d::Zero();  ///< share of the fitted camera
   geometry::Vector6d b_camera = geometry::Vector6d::Zero();
-  Matrix6Xd H_pose_shared;  ///< with the cameras' unknowns
-  int num_corners = 0;      ///< of the fitted camera
+  Eigen::MatrixXd H_pose_shared;  ///< with the cameras' unknowns
+  int num_corners = 0;            ///< of the fitted camera
 };
 
 /// Derivatives of a pixel: with a motion xi of the board in the rig frame, T_rig_target <- exp(xi) T_rig_target, and with
@@ -36,13 +35,11 @@ struct PixelChange {
   Matrix2Xd J_px_shared;
 };
 
-template <class Model>
-std::optional<PixelChange> pixelChange(const Model& model, const geometry::Rigid3& T_cam_rig, const Eigen::Vector3d& p_rig) {
-  const Eigen::Vector3d p_cam = T_cam_rig * p_rig;
-  Eigen::Vector2d px;
+std::optional<PixelChange> pixelChange(const calibration::RigCamera& rig_camera, const Eigen::Vector3d& p_rig) {
+  const Eigen::Vector3d p_cam = rig_camera.T_cam_rig * p_rig;
   camera::Matrix23d J_px_pcam;
-  typename Model::ParameterJacobian J_px_parameters;
-  if (!model.project(p_cam, px, &J_px_pcam, &J_px_parameters)) {
+  camera::ParameterJacobian J_px_parameters;
+  if (!camera::project(rig_camera.camera.model, p_cam, &J_px_pcam, &J_px_parameters)) {
     return std::nullopt;
   }
   const auto motion = [](const Eigen::Vector3d& p) {
@@ -51,8 +48,8 @@ std::optional<PixelChange> pixelChange(const Model& model, const geometry::Rigid
     return J_p_xi;
   };
   PixelChange change;
-  change.J_px_pose = J_px_pcam * T_cam_rig.rotation.toRotationMatrix() * motion(p_rig);
-  change.J_px_shared.resize(2, Model::kNumParameters + 6);
+  change.J_px_pose = J_px_pcam * rig_camera.T_cam_rig.rotation.toRotationMatrix() * motion(p_rig);
+  change.J_px_shared.resize(2, J_px_parameters.cols() + 6);
   change.J_px_shared << J_px_parameters, J_px_pcam * motion(p_cam);
   return change;
 }
@@ -84,9 +81,8 @@ class DelayFit {
       }
     }
     for (const auto& [view, equations] : equations_) {
-      const auto H_pose = equations.H.ldlt();
-      H_shared_ -= equations.H_pose_shared.transpose() * H_pose.solve(equations.H_pose_shared);
-      b_shared_ -= equations.H_pose_shared.transpose() * H_pose.solve(equations.b);
+      H_shared_ -= equations.H_pose_shared.transpose() * geometry::solveSymmetric(equations.H, equations.H_pose_shared);
+      b_shared_ -= equations.H_pose_shared.transpose() * geometry::solveTwist(equations.H, equations.b);
       addMotion(equations, *scene.motions[static_cast<std::size_t>(view)]);
     }
   }
@@ -110,7 +106,7 @@ class DelayFit {
 
   void addMotion(const ViewEquations& equations, const geometry::Vector6d& motion_per_ms) {
     const geometry::Vector6d g_pose = equations.H_camera * motion_per_ms;
-    const geometry::Vector6d absorbed = equations.H.ldlt().solve(g_pose);
+    const geometry::Vector6d absorbed = geometry::solveTwist(equations.H, g_pose);
     product_ += motion_per_ms.dot(equations.b_camera) - absorbed.dot(equations.b);
     squared_velocity_ += motion_per_ms.dot(g_pose);
     information_ += motion_per_ms.dot(g_pose) - g_pose.dot(absorbed);
@@ -128,8 +124,7 @@ class DelayFit {
     const calibration::RigCamera& rig_camera = scene_.solution.rig.cameras[static_cast<std::size_t>(camera_index)];
     const Eigen::Vector3d p_rig = scene_.solution.T_rig_target[static_cast<std::size_t>(corner.view)] *
                                   scene_.points[static_cast<std::size_t>(corner.corner_id)];
-    const auto derive = [&](const auto& model) { return pixelChange(model, rig_camera.T_cam_rig, p_rig); };
-    const std::optional<PixelChange> change = std::visit(derive, rig_camera.camera.model);
+    const std::optional<PixelChange> change = pixelChange(rig_camera, p_rig);
     if (!change) {
       return;
     }
@@ -137,15 +132,15 @@ class DelayFit {
     const Matrix2Xd& K = change->J_px_shared;
     const Eigen::Vector2d& r = *corner.residual_px;
     const int first = first_shared_[static_cast<std::size_t>(camera_index)];
-    H_shared_.block(first, first, K.cols(), K.cols()) += K.transpose() * K;
-    b_shared_.segment(first, K.cols()) += K.transpose() * r;
+    H_shared_.block(first, first, K.cols(), K.cols()) += K.transpose().lazyProduct(K);
+    b_shared_.segment(first, K.cols()) += K.transpose().lazyProduct(r);
     squares_px2_ += r.squaredNorm();
     num_components_ += 2;
 
     ViewEquations& equations = equations_.try_emplace(corner.view, num_shared_).first->second;
     equations.H += J.transpose() * J;
     equations.b += J.transpose() * r;
-    equations.H_pose_shared.middleCols(first, K.cols()) += J.transpose() * K;
+    equations.H_pose_shared.middleCols(first, K.cols()) += J.transpose().lazyProduct(K);
     if (camera_index == fitted_camera_) {
       equations.H_camera += J.transpose() * J;
       equations.b_camera += J.transpose() * r;

@@ -1,6 +1,5 @@
 #include "tartan_calib/simulation/lens.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,6 +9,7 @@
 
 #include "random.h"
 #include "tartan_calib/error.h"
+#include "tartan_calib/geometry/linear_solve.h"
 
 namespace tartan_calib::simulation {
 namespace {
@@ -135,8 +135,8 @@ FitState evaluateFit(const camera::CameraModel& model, const std::vector<Ray>& r
       continue;
     }
     const Eigen::Vector2d error = ray.px - *px;
-    state.normal += J.transpose() * J;
-    state.right += J.transpose() * error;
+    state.normal += J.transpose().lazyProduct(J);
+    state.right += J.transpose().lazyProduct(error);
     state.squared_px2 += error.squaredNorm();
   }
   return state;
@@ -151,7 +151,7 @@ camera::CameraModel fitModel(const camera::CameraModel& start, const std::vector
   for (int step = 0; step < kMaxSteps; ++step) {
     Eigen::MatrixXd damped = state.normal;
     damped.diagonal() += damping * state.normal.diagonal() + Eigen::VectorXd::Constant(damped.rows(), 1e-12);
-    const Eigen::VectorXd moved = camera::parameters(model) + damped.ldlt().solve(state.right);
+    const Eigen::VectorXd moved = camera::parameters(model) + geometry::solveSymmetric(damped, state.right);
     const Eigen::VectorXd inside = moved.cwiseMax(camera::lowerBound(model)).cwiseMin(camera::upperBound(model));
     const camera::CameraModel candidate = camera::withParameters(model, inside);
     const FitState candidate_state = evaluateFit(candidate, rays);

@@ -72,7 +72,7 @@ class BoardPath {
     const int short_side_px = std::min(lens_.camera.width, lens_.camera.height);
     const double board_px = kMeanSizeOfImage * (1.0 + kSizeSwing * size_.at(time)) * short_side_px;
     const double distance_m = board_.size_m / (board_px * aim.rad_per_px);
-    const Eigen::Quaterniond to_aim = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), aim.ray);
+    const Eigen::Quaterniond to_aim = geometry::rotationBetween(Eigen::Vector3d::UnitZ(), aim.ray);
     const Eigen::Quaterniond tilt =
         geometry::expRotation(max_tilt_rad_ * Eigen::Vector3d(tilt_x_.at(time), tilt_y_.at(time), 0.0));
     const Eigen::Quaterniond roll = geometry::expRotation({0.0, 0.0, kMaxRollRad * roll_.at(time)});

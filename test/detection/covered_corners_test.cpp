@@ -5,6 +5,7 @@
 
 #include "recovery_score.h"
 #include "tartan_calib/detection/corner_recovery.h"
+#include "tartan_calib/simulation/board_layer.h"
 
 /// Corners of the board that something else hides are not reported.
 namespace tartan_calib::detection {

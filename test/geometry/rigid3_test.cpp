@@ -160,6 +160,17 @@ TEST_F(Rigid3Test, hatIsTheCrossProduct) {
   EXPECT_LT((hat(a) * b - a.cross(b)).norm(), 1e-15);
 }
 
+TEST_F(Rigid3Test, rotationBetweenTurnsOneDirectionIntoTheOtherTheShortestWay) {
+  for (const double angle_rad : {0.0, 1e-9, 1e-4, 1.0, 3.0, M_PI - 1e-6, M_PI - 1e-12, M_PI}) {
+    const Eigen::Vector3d from = vector();
+    const Eigen::Vector3d axis = from.cross(vector()).normalized();
+    const Eigen::Vector3d to = 3.0 * (expRotation(angle_rad * axis) * from);
+    const Eigen::Quaterniond R = rotationBetween(from, to);
+    EXPECT_LT((R * from.normalized() - to.normalized()).norm(), 1e-8) << angle_rad;
+    EXPECT_NEAR(logRotation(R).norm(), angle_rad, 1e-7);
+  }
+}
+
 TEST_F(Rigid3Test, isReadFromAMatrixRoundedByAFile) {
   const Rigid3 T = rigid();
   const Eigen::Matrix4d rounded = (T.matrix() * 1e6).array().round() / 1e6;

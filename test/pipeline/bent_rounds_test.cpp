@@ -4,6 +4,7 @@
 
 #include "../../src/pipeline/bent_board.h"
 #include "board_stream.h"
+#include "tartan_calib/simulation/sensor.h"
 #include "wide_recording.h"
 
 /// Rounds over the images of a board that is not flat.

@@ -47,6 +47,10 @@ Eigen::Quaterniond expRotation(const Eigen::Vector3d& phi);
 /// Inverse of expRotation, |phi| <= pi.
 Eigen::Vector3d logRotation(const Eigen::Quaterniond& R);
 
+/// The shortest rotation that takes the direction `from` to the direction `to`; neither may be zero. Where they are
+/// opposite, the axis is any that is perpendicular.
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 /// exp(phi + d) = exp(leftJacobian(phi) * d) * exp(phi) to first order in d.
 Eigen::Matrix3d leftJacobian(const Eigen::Vector3d& phi);
 
