@@ -61,8 +61,10 @@ test_packages=(libceres-dev libgtest-dev poppler-utils python3-diagnostic-msgs p
 # shellcheck disable=SC2034
 all_packages=("${core_packages[@]}" "${ros_packages[@]}" "${test_packages[@]}")
 
-# CMake options of every build: warnings are errors, and ccache where it is installed anyway.
+# CMake options of every build: warnings are errors, and ccache where it is installed anyway; it cannot use precompiled headers.
 cmake_options=(-DTARTAN_CALIB_WERROR=ON)
 if command -v ccache > /dev/null; then
   cmake_options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+else
+  cmake_options+=(-DTARTAN_CALIB_PRECOMPILED_HEADERS=ON)
 fi
