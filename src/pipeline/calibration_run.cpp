@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "board_poses.h"
@@ -215,11 +216,7 @@ std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraSt
   return recovered;
 }
 
-bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
-  std::vector<CameraCorners> recovered = recoverAll(streams);
-  RoundSummary summary = compareCorners(corners_, recovered);
-  summary.round = static_cast<int>(result_.rounds.size()) + 1;
-  keepRounds(corners_, summary.round, recovered);
+void CalibrationRun::solveAgain(const std::vector<CameraCorners>& recovered, RoundSummary& summary) {
   corners_ = recovered;
   known_rig_ = result_.solution.rig;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
@@ -227,7 +224,23 @@ bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
     usable_[i] = imagesWithCorners(corners_[i]);
   }
   solve(startRig());
+  checkSolution(result_.solution);
   describeSolution(*known_rig_, result_.solution, target_points_, summary);
+}
+
+bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
+  std::vector<CameraCorners> recovered = recoverAll(streams);
+  RoundSummary summary = compareCorners(corners_, recovered);
+  summary.round = static_cast<int>(result_.rounds.size()) + 1;
+  keepRounds(corners_, summary.round, recovered);
+  const auto before = std::make_tuple(corners_, usable_, started_, known_rig_, result_);
+  try {
+    solveAgain(recovered, summary);
+  } catch (const CalibrationError& error) {
+    std::tie(corners_, usable_, started_, known_rig_, result_) = before;
+    warn(format("round %d did not end with a calibration, that of the round before is kept; ", summary.round) + error.what());
+    return false;
+  }
   result_.rounds.push_back(summary);
   if (listener_.round_finished) {
     listener_.round_finished(summary);

@@ -21,7 +21,8 @@ class CalibrationRun {
   /// Solves all cameras together from their starts.
   void solveTogether();
 
-  /// Goes through the images again with the solved model, and solves again. False once nothing improves any more.
+  /// Goes through the images again with the solved model, and solves again. False once nothing improves any more, and where
+  /// that led to no calibration: then the one before stays.
   bool runRound(const std::vector<CameraStream>& streams);
 
   /// Statistics of the last solve, and everything else that the result tells.
@@ -40,6 +41,7 @@ class CalibrationRun {
   calibration::Problem startRig();
   calibration::SolveOptions solveOptions() const;  ///< of a solve that tells the stage's iterations and can be cancelled
   void solve(const calibration::Problem& problem);
+  void solveAgain(const std::vector<CameraCorners>& recovered, RoundSummary& summary);
   std::vector<CameraCorners> recoverAll(const std::vector<CameraStream>& streams);
   void describe(CalibrationResult& result) const;
 
