@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "board_poses.h"
@@ -216,8 +215,7 @@ std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraSt
   return recovered;
 }
 
-void CalibrationRun::solveAgain(const std::vector<CameraCorners>& recovered, RoundSummary& summary) {
-  corners_ = recovered;
+void CalibrationRun::solveAgain(RoundSummary& summary) {
   known_rig_ = result_.solution.rig;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     started_[i] = known_rig_->cameras[i].camera;
@@ -233,12 +231,15 @@ bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
   RoundSummary summary = compareCorners(corners_, recovered);
   summary.round = static_cast<int>(result_.rounds.size()) + 1;
   keepRounds(corners_, summary.round, recovered);
-  const auto before = std::make_tuple(corners_, usable_, started_, known_rig_, result_);
+  std::swap(corners_, recovered);
+  CalibrationResult before = result_;
   try {
-    solveAgain(recovered, summary);
+    solveAgain(summary);
   } catch (const CalibrationError& error) {
-    std::tie(corners_, usable_, started_, known_rig_, result_) = before;
-    warn(format("round %d did not end with a calibration, that of the round before is kept; ", summary.round) + error.what());
+    corners_ = std::move(recovered);
+    result_ = std::move(before);
+    warn(format("round %d did not end with a calibration, that of the round before is kept; ", summary.round) +
+         error.what());
     return false;
   }
   result_.rounds.push_back(summary);

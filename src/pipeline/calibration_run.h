@@ -41,7 +41,7 @@ class CalibrationRun {
   calibration::Problem startRig();
   calibration::SolveOptions solveOptions() const;  ///< of a solve that tells the stage's iterations and can be cancelled
   void solve(const calibration::Problem& problem);
-  void solveAgain(const std::vector<CameraCorners>& recovered, RoundSummary& summary);
+  void solveAgain(RoundSummary& summary);  ///< from the last solution, of corners that a round has changed
   std::vector<CameraCorners> recoverAll(const std::vector<CameraStream>& streams);
   void describe(CalibrationResult& result) const;
 
