@@ -1,12 +1,13 @@
 """Shows the images of a bag to a node, and waits for what the node publishes. Nothing sleeps: every wait is for a condition."""
 
+import copy
 import threading
 import time
 
 import numpy
 import rosbag
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import Image
 
 TOPICS = ("/cam0/image_raw", "/cam1/image_raw")
@@ -109,3 +110,25 @@ class LiveCameras:
 
 def pixels(image):
     return numpy.frombuffer(image.data, numpy.uint8).reshape(image.height, image.width, -1)
+
+
+class SurvivesFaults:
+    """Tests of any node that watches the `cameras` of its test case: what goes wrong with one stops nothing."""
+
+    def test_survives_a_topic_that_stops(self):
+        for view in self.cameras.views[:5]:
+            self.cameras.show_and_wait(view[:1], cameras=[0])
+        self.cameras.wait_for_status(1, lambda level, *_: level == DiagnosticStatus.STALE, "cam1 is known to have stopped")
+        self.cameras.show_and_wait(self.cameras.views[0])
+
+    def test_survives_broken_images(self):
+        whole = self.cameras.views[0][1]
+        broken = [copy.deepcopy(whole) for _ in range(4)]
+        broken[0].data = whole.data[: len(whole.data) // 2]
+        broken[1].encoding = "no such encoding"
+        broken[2].width = broken[2].height = broken[2].step = 0
+        broken[3].step = 2**31
+        for image in broken:
+            show = lambda image=image: self.cameras.show([image], cameras=[1])
+            self.cameras.wait_for_status(1, lambda _, message, __: message.startswith("broken image"), "it is told", show)
+        self.cameras.show_and_wait(self.cameras.views[0])

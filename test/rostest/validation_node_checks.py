@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """What validation_node says about a calibration; run by rostest."""
 
-import copy
 import sys
 import unittest
 from pathlib import Path
@@ -9,11 +8,11 @@ from pathlib import Path
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from live_cameras import LiveCameras
+from live_cameras import LiveCameras, SurvivesFaults
 from sensor_msgs.msg import Image
 
 
-class ValidationNode(unittest.TestCase):
+class ValidationNode(SurvivesFaults, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("validation_node_checks")
@@ -36,24 +35,6 @@ class ValidationNode(unittest.TestCase):
         show = lambda: self.cameras.show([small], cameras=[1])
         status, _ = self.cameras.wait_for_status(1, lambda level, *_: level == DiagnosticStatus.ERROR, "it is refused", show)
         self.assertIn("160x120", status.message)
-        self.cameras.show_and_wait(self.cameras.views[0])
-
-    def test_survives_a_topic_that_stops(self):
-        for view in self.cameras.views[:5]:
-            self.cameras.show_and_wait(view[:1], cameras=[0])
-        self.cameras.wait_for_status(1, lambda level, *_: level == DiagnosticStatus.STALE, "cam1 is known to have stopped")
-        self.cameras.show_and_wait(self.cameras.views[0])
-
-    def test_survives_broken_images(self):
-        whole = self.cameras.views[0][1]
-        broken = [copy.deepcopy(whole) for _ in range(4)]
-        broken[0].data = whole.data[: len(whole.data) // 2]
-        broken[1].encoding = "no such encoding"
-        broken[2].width = broken[2].height = broken[2].step = 0
-        broken[3].step = 2**31
-        for image in broken:
-            show = lambda image=image: self.cameras.show([image], cameras=[1])
-            self.cameras.wait_for_status(1, lambda _, message, __: message.startswith("broken image"), "it is told", show)
         self.cameras.show_and_wait(self.cameras.views[0])
 
 
