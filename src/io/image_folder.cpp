@@ -100,15 +100,19 @@ std::vector<StampedFile> listImages(const fs::path& folder, const std::string& t
   return files;
 }
 
-std::vector<StampedFile> selected(const std::vector<StampedFile>& files, const std::string& topic,
-                                  const RecordingOptions& options) {
-  std::vector<std::int64_t> stamps_ns;
-  stamps_ns.reserve(files.size());
+TopicStamps stampsOf(const std::vector<StampedFile>& files, const std::string& topic) {
+  TopicStamps stamps{topic, {}};
+  stamps.stamps_ns.reserve(files.size());
   for (const StampedFile& file : files) {
-    stamps_ns.push_back(file.stamp_ns);
+    stamps.stamps_ns.push_back(file.stamp_ns);
   }
+  return stamps;
+}
+
+std::vector<StampedFile> only(const std::vector<StampedFile>& files, const std::vector<std::size_t>& images) {
   std::vector<StampedFile> result;
-  for (const std::size_t i : selectImages(stamps_ns, topic, options)) {
+  result.reserve(images.size());
+  for (const std::size_t i : images) {
     result.push_back(files[i]);
   }
   return result;
@@ -178,17 +182,24 @@ std::vector<pipeline::CameraStream> openImageFolder(const std::string& folder, c
                                                     const RecordingOptions& options) {
   checkOptions(options);
   const std::vector<std::string> known = imageFolderTopics(folder);
-  std::vector<pipeline::CameraStream> streams;
+  std::vector<std::vector<StampedFile>> files;
+  std::vector<TopicStamps> stamps;
   for (const std::string& asked : topics) {
     const std::string camera = cameraName(asked);
     const std::string topic = topicOf(camera);
     if (std::find(known.begin(), known.end(), topic) == known.end()) {
       throw noSuchTopic(folder, asked, known);
     }
-    const std::vector<StampedFile> all = listImages(fs::path(folder) / camera, topic, options);
-    const auto files = std::make_shared<const std::vector<StampedFile>>(selected(all, topic, options));
-    tellOfReduction(*files, topic, options);
-    streams.push_back({topic, files->size(), [files] { return imageSource(files); }});
+    files.push_back(listImages(fs::path(folder) / camera, topic, options));
+    stamps.push_back(stampsOf(files.back(), topic));
+  }
+  const std::vector<std::vector<std::size_t>> selected = selectImages(stamps, options);
+
+  std::vector<pipeline::CameraStream> streams;
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    const auto wanted = std::make_shared<const std::vector<StampedFile>>(only(files[i], selected[i]));
+    tellOfReduction(*wanted, stamps[i].topic, options);
+    streams.push_back({stamps[i].topic, wanted->size(), [wanted] { return imageSource(wanted); }});
   }
   return streams;
 }

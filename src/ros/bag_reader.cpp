@@ -103,16 +103,20 @@ void tell(const TopicIndex& index, const io::RecordingOptions& options) {
   }
 }
 
-/// The index with only those images that the options select.
-std::shared_ptr<const TopicIndex> selected(const TopicIndex& index, const io::RecordingOptions& options) {
-  std::vector<std::int64_t> stamps_ns;
-  stamps_ns.reserve(index.stamp_message.size());
+io::TopicStamps stampsOf(const TopicIndex& index) {
+  io::TopicStamps stamps{index.topic, {}};
+  stamps.stamps_ns.reserve(index.stamp_message.size());
   for (const auto& [stamp_ns, message] : index.stamp_message) {
-    stamps_ns.push_back(stamp_ns);
+    stamps.stamps_ns.push_back(stamp_ns);
   }
+  return stamps;
+}
+
+/// The index with only those images.
+std::shared_ptr<const TopicIndex> only(const TopicIndex& index, const std::vector<std::size_t>& images) {
   auto result = std::make_shared<TopicIndex>(index);
   result->stamp_message.clear();
-  for (const std::size_t i : io::selectImages(stamps_ns, index.topic, options)) {
+  for (const std::size_t i : images) {
     result->stamp_message.push_back(index.stamp_message[i]);
   }
   return result;
@@ -187,12 +191,18 @@ std::vector<pipeline::CameraStream> openBag(const std::string& path, const std::
   }
   scan(*shared, indices);
 
-  std::vector<pipeline::CameraStream> streams;
+  std::vector<io::TopicStamps> stamps;
   for (const std::string& topic : topics) {
     tell(indices.at(topic), options);
-    const std::shared_ptr<const TopicIndex> index = selected(indices.at(topic), options);
+    stamps.push_back(stampsOf(indices.at(topic)));
+  }
+  const std::vector<std::vector<std::size_t>> selected = io::selectImages(stamps, options);
+
+  std::vector<pipeline::CameraStream> streams;
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    const std::shared_ptr<const TopicIndex> index = only(indices.at(topics[i]), selected[i]);
     tellOfReduction(*shared, *index, options);
-    streams.push_back({topic, index->stamp_message.size(), [shared, index] { return imageSource(shared, index); }});
+    streams.push_back({topics[i], index->stamp_message.size(), [shared, index] { return imageSource(shared, index); }});
   }
   return streams;
 }

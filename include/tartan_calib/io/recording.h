@@ -19,16 +19,23 @@ struct TimeWindow {
 /// Which images of a recording are wanted, whatever it is stored in.
 struct RecordingOptions {
   std::optional<TimeWindow> window;
-  std::optional<double> max_rate_hz;               ///< an image is kept if it is at least 1 / rate after the last one kept
+  std::optional<double> max_rate_hz;               ///< of all topics together: cameras of a rig stay together
   std::function<void(const std::string&)> notice;  ///< told what a user should know of; may be empty
 };
 
 /// Throws InputError for a window that is empty and a rate that is not positive.
 void checkOptions(const RecordingOptions& options);
 
-/// Indices of the wanted images among those of one topic. `stamps_ns` is sorted. Throws InputError where none is left.
-std::vector<std::size_t> selectImages(const std::vector<std::int64_t>& stamps_ns, const std::string& topic,
-                                      const RecordingOptions& options);
+/// When the images of a topic were taken.
+struct TopicStamps {
+  std::string topic;
+  std::vector<std::int64_t> stamps_ns;  ///< sorted
+};
+
+/// Indices of the wanted images of every topic. Where there is a largest rate, one is taken whenever some topic has an image
+/// at least 1 / rate after the last time: of every topic the image nearest to that, if it is less than 1 / rate away. Throws
+/// InputError where a topic has none.
+std::vector<std::vector<std::size_t>> selectImages(const std::vector<TopicStamps>& topics, const RecordingOptions& options);
 
 /// Calls options.notice where there is one.
 void notify(const RecordingOptions& options, const std::string& message);

@@ -167,22 +167,18 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// `--bag-freq` that leaves as many images as are of use; empty where there are no more. Every topic is thinned out for
-/// itself, so cameras stay together only without gaps, and with a rate whose period is not near a multiple of theirs.
+/// `--bag-freq` that leaves as many images as are of use; empty where there are no more. Its period is no multiple of the
+/// images', where a little jitter would decide what is kept.
 std::string rateFlag(const Inspection& inspection) {
   constexpr double kEnoughImages = 300.0;
-  std::size_t num_cameras = 0;
-  std::size_t num_gaps = 0;
   const CameraInspection* longest = nullptr;
   for (const CameraInspection& camera : inspection.cameras) {
     if (camera.isUsable()) {
-      ++num_cameras;
-      num_gaps += camera.timing.num_gaps;
       longest = longest == nullptr || camera.num_images > longest->num_images ? &camera : longest;
     }
   }
   const double keep_every = static_cast<double>(longest->num_images) / kEnoughImages;
-  if (keep_every < 2.0 || !longest->timing.is_regular || (num_cameras > 1 && num_gaps > 0)) {
+  if (keep_every < 2.0 || !longest->timing.is_regular) {
     return "";
   }
   return format(" --bag-freq %.3g", 1.0 / ((std::round(keep_every) - 0.5) * longest->timing.period_s));
