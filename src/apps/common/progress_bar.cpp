@@ -30,10 +30,13 @@ std::string durationText(double seconds) {
   return std::to_string(whole / kSecondsPerHour) + "h " + twoDigits(whole % kSecondsPerHour / kSecondsPerMinute) + "m";
 }
 
-bool ProgressBar::isDue(std::size_t done, std::size_t total) const {
+bool ProgressBar::isDue(std::size_t done, std::size_t total, Duration left) const {
   const Clock::duration since = Clock::now() - drawn_at_;
-  return is_terminal_ ? since >= kRedrawInterval
-                      : since >= kLineInterval && done > drawn_done_ && (done - drawn_done_) * kLinesPerRun >= total;
+  if (is_terminal_) {
+    return since >= kRedrawInterval;
+  }
+  const bool is_tenth = done > drawn_done_ && (done - drawn_done_) * kLinesPerRun >= total;
+  return is_tenth && since >= kLineInterval && left >= kLineInterval;
 }
 
 void ProgressBar::show(std::size_t done, std::size_t total) {
@@ -42,13 +45,13 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
     drawn_done_ = 0;
     return;
   }
-  if (!isDue(done, total)) {
+  const Duration taken = Clock::now() - begin_;
+  const Duration left = taken / static_cast<double>(done) * static_cast<double>(total - done);
+  if (!isDue(done, total, left)) {
     return;
   }
-  const std::chrono::duration<double> taken = Clock::now() - begin_;
-  const double left_s = taken.count() / static_cast<double>(done) * static_cast<double>(total - done);
   std::printf("%s  Progress %zu / %zu \t Time remaining: %s%s", is_terminal_ ? kClearLine : "", done, total,
-              durationText(left_s).c_str(), is_terminal_ ? "" : "\n");
+              durationText(left.count()).c_str(), is_terminal_ ? "" : "\n");
   std::fflush(stdout);
   is_drawn_ = is_terminal_;
   drawn_at_ = Clock::now();
@@ -61,7 +64,7 @@ void ProgressBar::showElapsed(const std::string& what) {
   if (!is_terminal_ || now - begin_ < kLongStep || (is_drawn_ && now - drawn_at_ < kStep)) {
     return;
   }
-  const std::chrono::duration<double> taken = now - begin_;
+  const Duration taken = now - begin_;
   std::printf("%s  %s: %s", kClearLine, what.c_str(), durationText(taken.count()).c_str());
   std::fflush(stdout);
   is_drawn_ = true;

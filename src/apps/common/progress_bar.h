@@ -13,7 +13,8 @@ using ProgressCall = std::function<void(std::size_t done, std::size_t total)>;
 /// `45s`, `3m 05s`, `1h 02m`.
 std::string durationText(double seconds);
 
-/// Kalibr's progress line with the time left: redrawn in place on a terminal, else a line for every tenth of the work.
+/// Kalibr's progress line with the time left: redrawn in place on a terminal, else a line for every tenth of the work
+/// while it lasts.
 class ProgressBar {
  public:
   explicit ProgressBar(bool is_terminal) : is_terminal_(is_terminal) {}
@@ -30,8 +31,9 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
+  using Duration = std::chrono::duration<double>;
 
-  bool isDue(std::size_t done, std::size_t total) const;
+  bool isDue(std::size_t done, std::size_t total, Duration left) const;
 
   bool is_terminal_;
   bool is_drawn_ = false;
