@@ -39,9 +39,10 @@ void checkSolution(const calibration::Solution& solution) {
       throw CalibrationError(
           cameraName(i) +
           format(": the solver did not converge, and the focal length is uncertain to %.0f %%: the views do not determine "
-                 "a calibration; check the target file, record the board at more angles and distances, or try another "
-                 "of --models",
-                 kPercent * uncertainty_ratio));
+                 "a calibration; check the target file%s, record the board at more angles and distances, or try another of "
+                 "--models",
+                 kPercent * uncertainty_ratio,
+                 solution.rig.cameras.size() > 1 ? " and that the cameras are in sync (inspect_bag)" : ""));
     }
   }
 }

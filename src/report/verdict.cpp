@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tartan_calib/pipeline/warnings.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::report {
@@ -66,9 +67,14 @@ class CameraJudge {
         counts_(result.solution.counts[index]),
         analysis_(analysis.cameras[index]),
         name_(cameraName(index)),
+        contradiction_(pipeline::contradictionNote(result, static_cast<int>(index))),
         reasons_(reasons) {}
 
   void judge() {
+    if (contradiction_) {
+      reasons_.push_back({Grade::kRepeat, *contradiction_});
+      return;
+    }
     checkViews();
     checkReach();
     checkRegions();
@@ -79,6 +85,9 @@ class CameraJudge {
   }
 
   std::string fact() const {
+    if (contradiction_) {
+      return name_ + ": no corner was used";
+    }
     return name_ + format(": corners to %.0f degrees from the axis, rms %.3f px, projection certain to %.3f px (median)",
                           statistics_.max_polar_angle_rad * kDegreesPerRadian, statistics_.rms_px,
                           analysis_.median_stdev_px);
@@ -177,6 +186,7 @@ class CameraJudge {
   const calibration::CornerCounts& counts_;
   const CameraAnalysis& analysis_;
   const std::string name_;
+  const std::optional<std::string> contradiction_;
   std::vector<Reason>& reasons_;
 };
 

@@ -29,7 +29,7 @@ TEST(CheckSolution, WithoutConvergenceAMeaninglessFocalLengthIsAnError) {
     solution.covariance(row, row) = 19.0 * 19.0;
     EXPECT_NO_THROW(checkSolution(solution));
     solution.covariance(row, row) = 21.0 * 21.0;
-    test_support::expectMessage<CalibrationError>([&] { checkSolution(solution); }, {camera, "21 %", "--models"});
+    test_support::expectMessage<CalibrationError>([&] { checkSolution(solution); }, {camera, "21 %", "in sync", "--models"});
   }
 }
 

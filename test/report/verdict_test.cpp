@@ -151,6 +151,18 @@ TEST(VerdictTest, ACameraThatSharesFewViewsIsNamed) {
   reasonWith(judged(scene), "cam1 shares only 3 views");
 }
 
+TEST(VerdictTest, ACameraWithoutACornerThatAgreesIsJudgedByThatAlone) {
+  pipeline::CalibrationResult result = solved(movingScene(0.0));
+  result.solution.counts[1].used = 0;
+  const Verdict verdict = judged(result);
+  EXPECT_EQ(verdict.grade, Grade::kRepeat);
+  EXPECT_EQ(
+      textOf(verdict),
+      "cam1: none of its corners agrees with the other cameras: check that they are in sync (inspect_bag) and fixed to "
+      "each other\n");
+  EXPECT_EQ(verdict.facts[1], "cam1: no corner was used");
+}
+
 TEST(VerdictTest, WhatTheViewsDoNotDetermineMeansRepeat) {
   pipeline::CalibrationResult result = solved(sceneOf(pinhole()));
   result.solution.undetermined = {"cam0 projection[0]"};
