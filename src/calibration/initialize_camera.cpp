@@ -34,15 +34,6 @@ constexpr double kFailed = 0.25;
 constexpr std::size_t kFewViews = 5;
 constexpr std::size_t kFewCorners = 200;
 
-Poses estimatePoses(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
-                    const std::vector<CameraView>& views) {
-  Poses poses;
-  for (const CameraView& view : views) {
-    poses.push_back(estimatePose(camera, target_points, view.corners));
-  }
-  return poses;
-}
-
 std::size_t countPoses(const Poses& poses) {
   return static_cast<std::size_t>(std::count_if(poses.begin(), poses.end(), [](const auto& T) { return T.has_value(); }));
 }
@@ -63,7 +54,7 @@ struct PosedCamera {
 
 /// Intrinsics and existing poses by robust bundle adjustment.
 PosedCamera solveCamera(const PosedCamera& start, const std::vector<Eigen::Vector3d>& target_points,
-                        const std::vector<CameraView>& views) {
+                        const std::vector<CameraView>& views, int num_threads) {
   Problem problem;
   problem.target_points = target_points;
   problem.rig.cameras = {{start.camera, Rigid3()}};
@@ -77,7 +68,9 @@ PosedCamera solveCamera(const PosedCamera& start, const std::vector<Eigen::Vecto
       posed.push_back(v);
     }
   }
-  const Solution solution = solve(problem, SolveOptions());
+  SolveOptions options;
+  options.num_threads = num_threads;
+  const Solution solution = solve(problem, options);
   PosedCamera solved{solution.rig.cameras.front().camera, start.poses};
   for (std::size_t i = 0; i < posed.size(); ++i) {
     solved.poses[posed[i]] = solution.T_rig_target[i];
@@ -119,11 +112,11 @@ struct Candidate {
 
 /// Solves for the camera, again where that brings back views without a pose.
 Candidate tryCamera(const camera::Camera& start, const std::vector<Eigen::Vector3d>& target_points,
-                    const std::vector<CameraView>& views) {
-  PosedCamera posed{start, estimatePoses(start, target_points, views)};
+                    const std::vector<CameraView>& views, int num_threads) {
+  PosedCamera posed{start, estimatePoses(start, target_points, views, num_threads)};
   for (std::size_t num_solved = 0; countPoses(posed.poses) > num_solved;) {
     num_solved = countPoses(posed.poses);
-    posed = solveCamera(posed, target_points, views);
+    posed = solveCamera(posed, target_points, views, num_threads);
     for (std::size_t v = 0; v < views.size(); ++v) {
       if (!posed.poses[v]) {
         posed.poses[v] = estimatePose(posed.camera, target_points, views[v].corners);
@@ -139,7 +132,7 @@ Candidate tryLens(const CameraSpec& spec, const LensGuess& lens, const std::vect
   Candidate best;
   for (const camera::CameraModel& model :
        fitModels(camera::modelByName(spec.model_name), lens.focal_px, lens.centre_px, lens.samples)) {
-    const Candidate candidate = tryCamera({model, spec.width, spec.height}, target_points, views);
+    const Candidate candidate = tryCamera({model, spec.width, spec.height}, target_points, views, spec.num_threads);
     if (candidate.explanation.cost < best.explanation.cost) {
       best = candidate;
     }
@@ -210,23 +203,18 @@ std::vector<std::string> warningsAbout(const CameraSpec& spec, const std::vector
 
 CameraStart initializeCamera(const CameraSpec& spec, const std::vector<Eigen::Vector3d>& target_points,
                              const std::vector<CameraView>& views) {
-  CameraStart start;
   if (spec.known_model) {
-    start.camera = {*spec.known_model, spec.width, spec.height};
-  } else {
-    const std::vector<CameraView> usable = usableViews(views);
-    if (usable.size() < kMinViews) {
-      throwTooFew(views, usable.size());
-    }
-    const auto [candidate, lens] = findCamera(spec, target_points, usable);
-    if (candidate.explanation.share < kFailed) {
-      throwUnexplained(spec, usable, candidate.explanation.share);
-    }
-    start.camera = candidate.camera;
-    start.warnings = warningsAbout(spec, usable, candidate, lens);
+    return {{*spec.known_model, spec.width, spec.height}, {}};
   }
-  start.T_cam_target = estimatePoses(start.camera, target_points, views);
-  return start;
+  const std::vector<CameraView> usable = usableViews(views);
+  if (usable.size() < kMinViews) {
+    throwTooFew(views, usable.size());
+  }
+  const auto [candidate, lens] = findCamera(spec, target_points, usable);
+  if (candidate.explanation.share < kFailed) {
+    throwUnexplained(spec, usable, candidate.explanation.share);
+  }
+  return {candidate.camera, warningsAbout(spec, usable, candidate, lens)};
 }
 
 }  // namespace tartan_calib::calibration

@@ -8,6 +8,7 @@
 #include "tartan_calib/calibration/camera_graph.h"
 #include "tartan_calib/calibration/pose.h"
 #include "tartan_calib/error.h"
+#include "tartan_calib/solver/parallel.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::calibration {
@@ -48,8 +49,8 @@ void requireConnected(const Eigen::MatrixXi& shared_views) {
   }
 }
 
-ViewPoses estimatePoses(const std::vector<camera::Camera>& cameras, const std::vector<Eigen::Vector3d>& target_points,
-                        const View& view) {
+ViewPoses posesOf(const std::vector<camera::Camera>& cameras, const std::vector<Eigen::Vector3d>& target_points,
+                  const View& view) {
   ViewPoses poses;
   for (const CameraView& image : view.cameras) {
     const camera::Camera& camera = cameras.at(static_cast<std::size_t>(image.camera_index));
@@ -96,12 +97,16 @@ Rigid3 bestRigPose(const Rig& rig, const std::vector<Eigen::Vector3d>& target_po
 }  // namespace
 
 Problem initializeRig(const std::vector<camera::Camera>& cameras, const std::vector<Eigen::Vector3d>& target_points,
-                      const std::vector<View>& views, const std::optional<Rig>& known_rig) {
+                      const std::vector<View>& views, const RigStartOptions& options) {
+  const std::optional<Rig>& known_rig = options.known_rig;
   const int num_cameras = static_cast<int>(cameras.size());
-  std::vector<ViewPoses> poses;
-  for (const View& view : views) {
-    poses.push_back(estimatePoses(cameras, target_points, view));
-  }
+  std::vector<ViewPoses> poses(views.size());
+  solver::forEachChunk(static_cast<int>(views.size()), options.num_threads, [&](const solver::Chunk& chunk) {
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      poses[at] = posesOf(cameras, target_points, views[at]);
+    }
+  });
   if (!known_rig) {
     requireConnected(sharedPoses(poses, num_cameras));
   }

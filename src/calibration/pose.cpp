@@ -8,6 +8,7 @@
 #include "robust.h"
 #include "tartan_calib/geometry/linear_solve.h"
 #include "tartan_calib/median.h"
+#include "tartan_calib/solver/parallel.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -261,6 +262,19 @@ std::optional<Rigid3> estimatePose(const camera::Camera& camera, const std::vect
     return std::nullopt;
   }
   return estimate(camera, seen, std::hypot(camera.width, camera.height));
+}
+
+std::vector<std::optional<Rigid3>> estimatePoses(const camera::Camera& camera,
+                                                 const std::vector<Eigen::Vector3d>& target_points,
+                                                 const std::vector<observation::CameraView>& images, int num_threads) {
+  std::vector<std::optional<Rigid3>> poses(images.size());
+  solver::forEachChunk(static_cast<int>(images.size()), num_threads, [&](const solver::Chunk& chunk) {
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      poses[at] = estimatePose(camera, target_points, images[at].corners);
+    }
+  });
+  return poses;
 }
 
 }  // namespace tartan_calib::calibration

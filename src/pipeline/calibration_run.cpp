@@ -161,7 +161,8 @@ calibration::Problem CalibrationRun::startRig() {
   begin(Stage::kStartRig);
   const std::vector<observation::View> views = calibration::synchronize(usable_, options_.approx_sync_ns);
   result_.graph = calibration::cameraGraph(views, static_cast<int>(started_.size()));
-  calibration::Problem problem = calibration::initializeRig(started_, target_points_, views, known_rig_);
+  calibration::Problem problem =
+      calibration::initializeRig(started_, target_points_, views, {known_rig_, options_.num_threads});
   result_.num_dropped_views = static_cast<int>(views.size() - problem.views.size());
   end();
   return problem;

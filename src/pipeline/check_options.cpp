@@ -119,6 +119,7 @@ calibration::CameraSpec cameraSpec(const CalibrateOptions& options, const Camera
   spec.width = corners.width;
   spec.height = corners.height;
   spec.focal_hint_px = options.focal_hint_px;
+  spec.num_threads = options.num_threads;
   if (options.known_rig) {
     const camera::Camera& known = options.known_rig->cameras[at].camera;
     if (!hasSize(known, spec.width, spec.height)) {

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "parallel.h"
+#include "tartan_calib/solver/parallel.h"
 
 namespace tartan_calib::solver {
 namespace {

@@ -1,4 +1,4 @@
-#include "parallel.h"
+#include "tartan_calib/solver/parallel.h"
 
 #include <algorithm>
 #include <atomic>

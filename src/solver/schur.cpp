@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "parallel.h"
+#include "tartan_calib/solver/parallel.h"
 
 namespace tartan_calib::solver {
 namespace {

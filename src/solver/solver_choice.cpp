@@ -1,6 +1,6 @@
 #include "solver_choice.h"
 
-#include "parallel.h"
+#include "tartan_calib/solver/parallel.h"
 
 namespace tartan_calib::solver {
 namespace {

@@ -17,7 +17,6 @@ using test_support::Facing;
 using test_support::Random;
 using test_support::Scene;
 using test_support::SceneOptions;
-using test_support::shareWithin;
 
 constexpr int kWidth = 1280;
 constexpr int kHeight = 960;
@@ -59,6 +58,11 @@ Scene sceneOf(const Lens& lens, int num_views) {
 
 CameraStart startOf(const CameraSpec& spec, const Scene& scene) {
   return initializeCamera(spec, scene.target_points, test_support::viewsOf(scene.views, 0));
+}
+
+double shareWithin(double limit_px, const CameraStart& start, const Scene& scene) {
+  const auto views = test_support::viewsOf(scene.views, 0);
+  return test_support::shareWithin(limit_px, test_support::withPoses(start.camera, scene, views), scene);
 }
 
 std::string errorOf(const CameraSpec& spec, const Scene& scene) {

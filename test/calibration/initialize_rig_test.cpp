@@ -165,7 +165,7 @@ TEST(InitializeRigPair, keeps_a_known_rig_and_leaves_out_views_that_nothing_expl
   }
   Rig known = rig;
   known.cameras[1].T_cam_rig.translation.x() += 0.01;
-  const Problem problem = initializeRig(camerasOf(rig), scene.target_points, scene.views, known);
+  const Problem problem = initializeRig(camerasOf(rig), scene.target_points, scene.views, {known, 0});
   expectRig(problem.rig, known, 0.0, 1e-12);
   ASSERT_EQ(problem.views.size(), scene.views.size() - 1);
   EXPECT_EQ(problem.T_rig_target.size(), problem.views.size());

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tartan_calib/calibration/pose.h"
 #include "tartan_calib/calibration/solve.h"
 #include "tartan_calib/error.h"
 
@@ -52,7 +53,12 @@ Trial makeTrial(const Condition& condition, int number) {
   return trial;
 }
 
-double shareWithin(double limit_px, const calibration::CameraStart& start, const Scene& scene) {
+PosedCamera withPoses(const camera::Camera& camera, const Scene& scene, const std::vector<observation::CameraView>& views) {
+  constexpr int kAllCores = 0;
+  return {camera, calibration::estimatePoses(camera, scene.target_points, views, kAllCores)};
+}
+
+double shareWithin(double limit_px, const PosedCamera& posed, const Scene& scene) {
   const std::vector<observation::CameraView> views = viewsOf(scene.views, 0);
   double num_good = 0.0;
   double num_all = 0.0;
@@ -60,39 +66,39 @@ double shareWithin(double limit_px, const calibration::CameraStart& start, const
     for (const observation::Corner& corner : views[v].corners) {
       num_all += 1.0;
       const Eigen::Vector3d& p_target = scene.target_points[static_cast<std::size_t>(corner.corner_id)];
-      const auto px =
-          start.T_cam_target[v] ? camera::project(start.camera.model, *start.T_cam_target[v] * p_target) : std::nullopt;
+      const auto& T_cam_target = posed.T_cam_target[v];
+      const auto px = T_cam_target ? camera::project(posed.camera.model, *T_cam_target * p_target) : std::nullopt;
       num_good += px && (*px - corner.px).norm() <= limit_px ? 1.0 : 0.0;
     }
   }
   return num_good / num_all;
 }
 
-calibration::CameraStart startAndSolve(const std::string& model_name, const Scene& scene,
-                                       const std::vector<observation::CameraView>& views) {
+PosedCamera startAndSolve(const std::string& model_name, const Scene& scene,
+                          const std::vector<observation::CameraView>& views) {
   calibration::CameraSpec spec;
   spec.model_name = model_name;
   spec.width = kTrialWidth;
   spec.height = kTrialHeight;
-  calibration::CameraStart start = calibration::initializeCamera(spec, scene.target_points, views);
+  PosedCamera posed = withPoses(calibration::initializeCamera(spec, scene.target_points, views).camera, scene, views);
   calibration::Problem problem;
   problem.target_points = scene.target_points;
-  problem.rig.cameras = {{start.camera, geometry::Rigid3()}};
+  problem.rig.cameras = {{posed.camera, geometry::Rigid3()}};
   for (std::size_t v = 0; v < views.size(); ++v) {
-    if (start.T_cam_target[v]) {
+    if (posed.T_cam_target[v]) {
       problem.views.push_back({views[v].stamp_ns, {views[v]}});
-      problem.T_rig_target.push_back(*start.T_cam_target[v]);
+      problem.T_rig_target.push_back(*posed.T_cam_target[v]);
     }
   }
   const calibration::Solution solution = calibration::solve(problem, calibration::SolveOptions());
-  start.camera = solution.rig.cameras[0].camera;
+  posed.camera = solution.rig.cameras[0].camera;
   std::size_t solved = 0;
-  for (std::optional<geometry::Rigid3>& T_cam_target : start.T_cam_target) {
+  for (std::optional<geometry::Rigid3>& T_cam_target : posed.T_cam_target) {
     if (T_cam_target) {
       T_cam_target = solution.T_rig_target[solved++];
     }
   }
-  return start;
+  return posed;
 }
 
 std::optional<std::string> failure(const Trial& trial) {

@@ -52,12 +52,20 @@ constexpr int kTrialHeight = 960;
 /// The lens of that number under a condition; fields of view are spread over 60 degrees to what the pair allows.
 Trial makeTrial(const Condition& condition, int number);
 
-/// Share of all corners, wrong ones at their right place, that the start puts within `limit_px` of the truth.
-double shareWithin(double limit_px, const calibration::CameraStart& start, const Scene& scene);
+/// A camera with a pose for each view that it explains.
+struct PosedCamera {
+  camera::Camera camera;
+  std::vector<std::optional<geometry::Rigid3>> T_cam_target;
+};
+
+PosedCamera withPoses(const camera::Camera& camera, const Scene& scene, const std::vector<observation::CameraView>& views);
+
+/// Share of all corners, wrong ones at their right place, that the camera puts within `limit_px` of the truth.
+double shareWithin(double limit_px, const PosedCamera& posed, const Scene& scene);
 
 /// The start followed by the solve of all views; views without a pose keep none.
-calibration::CameraStart startAndSolve(const std::string& model_name, const Scene& scene,
-                                       const std::vector<observation::CameraView>& views);
+PosedCamera startAndSolve(const std::string& model_name, const Scene& scene,
+                          const std::vector<observation::CameraView>& views);
 
 /// Empty where 97 % of the corners of all views are within 1.5 px of the truth after the solve, else what went wrong.
 std::optional<std::string> failure(const Trial& trial);

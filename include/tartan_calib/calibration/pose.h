@@ -15,4 +15,10 @@ namespace tartan_calib::calibration {
 std::optional<geometry::Rigid3> estimatePose(const camera::Camera& camera, const std::vector<Eigen::Vector3d>& target_points,
                                              const std::vector<observation::Corner>& corners);
 
+/// The same for every image of a camera, on up to `num_threads` threads (0: all cores).
+std::vector<std::optional<geometry::Rigid3>> estimatePoses(const camera::Camera& camera,
+                                                           const std::vector<Eigen::Vector3d>& target_points,
+                                                           const std::vector<observation::CameraView>& images,
+                                                           int num_threads);
+
 }  // namespace tartan_calib::calibration
