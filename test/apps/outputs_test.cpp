@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "calibrate_cameras/session.h"
-#include "common/progress_bar.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -57,14 +56,6 @@ TEST(CheckWritable, NamesAFolderThatIsNotThere) {
   EXPECT_NO_THROW(checkWritable("rig"));
   EXPECT_NO_THROW(checkWritable((fs::temp_directory_path() / "rig").string()));
   EXPECT_THROW(checkWritable("/nowhere/rig"), InputError);
-}
-
-TEST(DurationText, ShowsTheTwoLargestUnits) {
-  EXPECT_EQ(durationText(0.4), "0s");
-  EXPECT_EQ(durationText(59.4), "59s");
-  EXPECT_EQ(durationText(59.6), "1m 00s");
-  EXPECT_EQ(durationText(185.0), "3m 05s");
-  EXPECT_EQ(durationText(3725.0), "1h 02m");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ std::string durationText(double seconds) {
 }
 
 bool ProgressBar::isDue(std::size_t done, std::size_t total, Duration left) const {
-  const Clock::duration since = Clock::now() - drawn_at_;
+  const Clock::duration since = now_() - drawn_at_;
   if (is_terminal_) {
     return since >= kRedrawInterval;
   }
@@ -41,11 +41,11 @@ bool ProgressBar::isDue(std::size_t done, std::size_t total, Duration left) cons
 
 void ProgressBar::show(std::size_t done, std::size_t total) {
   if (done == 0) {
-    begin_ = drawn_at_ = Clock::now();
+    begin_ = drawn_at_ = now_();
     drawn_done_ = 0;
     return;
   }
-  const Duration taken = Clock::now() - begin_;
+  const Duration taken = now_() - begin_;
   const Duration left = taken / static_cast<double>(done) * static_cast<double>(total - done);
   if (!isDue(done, total, left)) {
     return;
@@ -54,13 +54,13 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
               durationText(left.count()).c_str(), is_terminal_ ? "" : "\n");
   std::fflush(stdout);
   is_drawn_ = is_terminal_;
-  drawn_at_ = Clock::now();
+  drawn_at_ = now_();
   drawn_done_ = done;
 }
 
 void ProgressBar::showElapsed(const std::string& what) {
   constexpr std::chrono::seconds kStep{1};
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = now_();
   if (!is_terminal_ || now - begin_ < kLongStep || (is_drawn_ && now - drawn_at_ < kStep)) {
     return;
   }

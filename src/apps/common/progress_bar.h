@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace tartan_calib::apps {
 
@@ -17,7 +18,10 @@ std::string durationText(double seconds);
 /// while it lasts.
 class ProgressBar {
  public:
-  explicit ProgressBar(bool is_terminal) : is_terminal_(is_terminal) {}
+  using Clock = std::chrono::steady_clock;
+
+  explicit ProgressBar(bool is_terminal, std::function<Clock::time_point()> now = Clock::now)
+      : is_terminal_(is_terminal), now_(std::move(now)) {}
 
   /// Begins anew where `done` is 0.
   void show(std::size_t done, std::size_t total);
@@ -30,12 +34,12 @@ class ProgressBar {
   void clear();
 
  private:
-  using Clock = std::chrono::steady_clock;
   using Duration = std::chrono::duration<double>;
 
   bool isDue(std::size_t done, std::size_t total, Duration left) const;
 
   bool is_terminal_;
+  std::function<Clock::time_point()> now_;
   bool is_drawn_ = false;
   Clock::time_point begin_;
   Clock::time_point drawn_at_;
