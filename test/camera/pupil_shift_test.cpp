@@ -56,19 +56,16 @@ TEST(PupilShift, VanishesForFarPoints) {
 }
 
 TEST(PupilShift, ProjectionThroughItHasTheJacobianOfDifferences) {
-  const DoubleSphere lens({-0.2, 0.6, 300.0, 300.0, 320.0, 240.0});
-  const PupilShift shift = pupil();
-  const ShiftedModel<DoubleSphere> shifted{lens, shift};
+  const Camera camera{DoubleSphere({-0.2, 0.6, 300.0, 300.0, 320.0, 240.0}), 640, 480, pupil()};
   for (const Eigen::Vector3d& p : points()) {
-    Eigen::Vector2d px;
     Matrix23d J;
-    ASSERT_TRUE(shifted.project(p, px, &J));
+    ASSERT_TRUE(project(camera, p, &J));
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d step = 1e-2 * kStep * Eigen::Vector3d::Unit(i);
-      Eigen::Vector2d above;
-      Eigen::Vector2d below;
-      ASSERT_TRUE(shifted.project(p + step, above) && shifted.project(p - step, below));
-      EXPECT_LT((J.col(i) - (above - below) / (2.0 * step.norm())).norm(), 1e-3 * J.norm()) << p.transpose();
+      const auto above = project(camera, p + step);
+      const auto below = project(camera, p - step);
+      ASSERT_TRUE(above && below);
+      EXPECT_LT((J.col(i) - (*above - *below) / (2.0 * step.norm())).norm(), 1e-3 * J.norm()) << p.transpose();
     }
   }
 }

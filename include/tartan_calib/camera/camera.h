@@ -22,7 +22,7 @@ using CameraModel =
 
 /// A lens model with its parameters, and the size of the images it belongs to. The pupil stays in place unless a solve was
 /// asked to move it; files of camchains do not know it. Functions below look the model up for every
-/// call, which costs little beside a projection; the solver's innermost loops use `std::visit` on `model` once, outside.
+/// call, which costs little beside a projection.
 struct Camera {
   CameraModel model;
   int width = 0;

@@ -29,26 +29,4 @@ struct PupilShift {
                         Jacobian* J_coefficients = nullptr) const;
 };
 
-/// A lens model behind its moving pupil, for points at a finite distance.
-template <class LensModel>
-struct ShiftedModel {
-  const LensModel& lens;
-  const PupilShift& pupil;
-
-  /// As Model::project.
-  bool project(const Eigen::Vector3d& p_cam, Eigen::Vector2d& px, Matrix23d* J_px_pcam = nullptr) const {
-    if (pupil.isZero()) {
-      return lens.project(p_cam, px, J_px_pcam);
-    }
-    Eigen::Matrix3d J_p;
-    if (!lens.project(pupil.apply(p_cam, &J_p), px, J_px_pcam)) {
-      return false;
-    }
-    if (J_px_pcam != nullptr) {
-      *J_px_pcam *= J_p;
-    }
-    return true;
-  }
-};
-
 }  // namespace tartan_calib::camera
