@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "random_problem.h"
 #include "tartan_calib/solver/levenberg_marquardt.h"
 
@@ -16,7 +14,7 @@ TEST(SharedCovariance, IsTheSharedPartOfTheInverseNormalMatrix) {
   RandomProblem problem({});
   minimize(problem, {});
   const SharedCovariance result = sharedCovariance(problem, kAllCores);
-  const Eigen::MatrixXd expected = denseSystem(problem).H.inverse().topLeftCorner(problem.numShared(), problem.numShared());
+  const Eigen::MatrixXd expected = inverseNormalMatrix(problem).topLeftCorner(problem.numShared(), problem.numShared());
   EXPECT_LT((result.covariance - expected).norm(), 1e-9 * expected.norm());
   EXPECT_EQ(result.rank, problem.numShared());
   EXPECT_EQ(result.block_rank, kBlockSize * problem.numBlocks());

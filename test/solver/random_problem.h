@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -24,26 +23,11 @@ class RandomProblem : public BlockProblem {
   struct Block {
     std::vector<int> touched;
     Eigen::MatrixXd A;
-    Eigen::Matrix<double, Eigen::Dynamic, kBlockSize> B;
+    Eigen::MatrixXd B;
     Eigen::VectorXd c;
   };
 
-  explicit RandomProblem(const RandomProblemOptions& options) : bend_(options.bend), random_(options.seed) {
-    s_ = Eigen::VectorXd::Zero(options.num_shared);
-    limits_ = {Eigen::VectorXd::Constant(options.num_shared, -std::numeric_limits<double>::infinity()),
-               Eigen::VectorXd::Constant(options.num_shared, std::numeric_limits<double>::infinity())};
-    for (int k = 0; k < options.num_blocks; ++k) {
-      Block block;
-      for (int i = 0; i < options.num_touched; ++i) {
-        block.touched.push_back((k + i * (options.num_shared / options.num_touched)) % options.num_shared);
-      }
-      block.A = randomMatrix(options.num_residuals, options.num_touched);
-      block.B = randomMatrix(options.num_residuals, kBlockSize);
-      block.c = randomMatrix(options.num_residuals, 1);
-      blocks.push_back(block);
-      b_.emplace_back(BlockVector::Zero());
-    }
-  }
+  explicit RandomProblem(const RandomProblemOptions& options);
 
   std::vector<Block> blocks;
 
@@ -58,35 +42,10 @@ class RandomProblem : public BlockProblem {
   int numBlocks() const override { return static_cast<int>(blocks.size()); }
   StepLimits stepLimits() const override { return {limits_.lower - s_, limits_.upper - s_}; }
 
-  double cost(int k) const override {
-    const Eigen::ArrayXd y = linear(k);
-    return 0.5 * (y + bend_ * y.sin() - at(k).c.array()).square().sum();
-  }
+  double cost(int k) const override;
+  BlockTerms linearize(int k) const override;
 
-  BlockTerms linearize(int k) const override {
-    const Block& block = at(k);
-    const Eigen::ArrayXd y = linear(k);
-    const Eigen::VectorXd r = y + bend_ * y.sin() - block.c.array();
-    const Eigen::VectorXd slope = 1.0 + bend_ * y.cos();
-    const Eigen::MatrixXd J_s = slope.asDiagonal() * block.A;
-    const Eigen::MatrixXd J_b = slope.asDiagonal() * block.B;
-    BlockTerms terms;
-    terms.cost = 0.5 * r.squaredNorm();
-    terms.shared = block.touched;
-    terms.H_ss = J_s.transpose() * J_s;
-    terms.g_s = J_s.transpose() * r;
-    terms.H_bs = J_b.transpose() * J_s;
-    terms.H_bb = J_b.transpose() * J_b;
-    terms.g_b = J_b.transpose() * r;
-    return terms;
-  }
-
-  void move(const Step& step) override {
-    s_ = (s_ + step.shared).cwiseMax(limits_.lower).cwiseMin(limits_.upper);
-    for (std::size_t k = 0; k < b_.size(); ++k) {
-      b_[k] += step.blocks[k];
-    }
-  }
+  void move(const Step& step) override;
   void save() override {
     saved_s_ = s_;
     saved_b_ = b_;
@@ -97,18 +56,9 @@ class RandomProblem : public BlockProblem {
   }
 
  private:
-  Eigen::MatrixXd randomMatrix(int rows, int cols) {
-    std::normal_distribution<double> normal;
-    return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return normal(random_); });
-  }
+  Eigen::MatrixXd randomMatrix(int rows, int cols);
   const Block& at(int k) const { return blocks[static_cast<std::size_t>(k)]; }
-  Eigen::ArrayXd linear(int k) const {
-    Eigen::VectorXd touched(static_cast<Eigen::Index>(at(k).touched.size()));
-    for (Eigen::Index i = 0; i < touched.size(); ++i) {
-      touched(i) = s_(at(k).touched[static_cast<std::size_t>(i)]);
-    }
-    return at(k).A * touched + at(k).B * b_[static_cast<std::size_t>(k)];
-  }
+  Eigen::VectorXd linear(int k) const;
 
   double bend_;
   std::mt19937 random_;
@@ -125,25 +75,9 @@ struct DenseSystem {
   Eigen::VectorXd g;
 };
 
-inline DenseSystem denseSystem(const BlockProblem& problem) {
-  const Eigen::Index size = problem.numShared() + kBlockSize * problem.numBlocks();
-  DenseSystem dense{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
-  for (int k = 0; k < problem.numBlocks(); ++k) {
-    const BlockTerms terms = problem.linearize(k);
-    const Eigen::Index at = problem.numShared() + kBlockSize * k;
-    dense.H.block<kBlockSize, kBlockSize>(at, at) = terms.H_bb;
-    dense.g.segment<kBlockSize>(at) = terms.g_b;
-    for (std::size_t i = 0; i < terms.shared.size(); ++i) {
-      const Eigen::Index local = static_cast<Eigen::Index>(i);
-      dense.g(terms.shared[i]) += terms.g_s(local);
-      dense.H.block<kBlockSize, 1>(at, terms.shared[i]) = terms.H_bs.col(local);
-      dense.H.block<1, kBlockSize>(terms.shared[i], at) = terms.H_bs.col(local).transpose();
-      for (std::size_t j = 0; j < terms.shared.size(); ++j) {
-        dense.H(terms.shared[i], terms.shared[j]) += terms.H_ss(local, static_cast<Eigen::Index>(j));
-      }
-    }
-  }
-  return dense;
-}
+DenseSystem denseSystem(const BlockProblem& problem);
+
+/// H^-1, the covariance of all unknowns.
+Eigen::MatrixXd inverseNormalMatrix(const BlockProblem& problem);
 
 }  // namespace tartan_calib::solver
