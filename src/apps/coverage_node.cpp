@@ -17,7 +17,8 @@ roslaunch tartan_calib record.launch does that and records a bag beside it. Para
   ~topics          image topics; those that end with /compressed carry compressed images
   ~models          a camera model for each; calibrate_cameras --help lists them
   ~target          YAML file of the board
-  ~output          the results are <output>-camchain.yaml, ..., the kept views <output>.bag (live)
+  ~output          the results are <output>-camchain.yaml, ..., the kept views <output>.bag; in a folder that is
+                   there (live)
   ~options         further flags of calibrate_cameras (none)
   ~max_rate        views per second that are looked at, 0: as many as the machine can (0)
   ~max_views       that are kept (100)

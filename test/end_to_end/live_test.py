@@ -53,16 +53,42 @@ class LiveNodes(unittest.TestCase):
 
     def node_with_views(self, recording, prefix):
         """A coverage node that was shown a recording, and the environment of its master."""
+        environment = self.start_master()
+        node = self.start_node(recording, prefix, environment)
+        played = run_in_workspace(f"rosbag play --quiet --wait-for-subscribers --rate 4 {self.folder}/{recording}.bag", env=environment)
+        self.assertEqual(played.returncode, 0, played.stderr)
+        return node, environment
+
+    def start_master(self):
+        """The environment of nodes of the test's own."""
         port = free_port()
         environment = {**self.environment, "ROS_MASTER_URI": f"http://localhost:{port}"}
         master = self.start(f"rosmaster --core -p {port}", environment)
         while not run_in_workspace("rosparam list", env=environment).stdout:
             self.assertIsNone(master.poll())
-        node = self.start(f"stdbuf -oL {PROGRAMS / 'coverage_node'} _topics:='/cam0/image_raw /cam1/image_raw' _models:='ds-none ds-none' "
+        return environment
+
+    def start_node(self, recording, prefix, environment):
+        return self.start(f"stdbuf -oL {PROGRAMS / 'coverage_node'} _topics:='/cam0/image_raw /cam1/image_raw' _models:='ds-none ds-none' "
                           f"_target:={self.recordings.target(recording)} _output:={prefix}", environment)
-        played = run_in_workspace(f"rosbag play --quiet --wait-for-subscribers --rate 4 {self.folder}/{recording}.bag", env=environment)
-        self.assertEqual(played.returncode, 0, played.stderr)
-        return node, environment
+
+    def test_a_folder_that_is_missing_ends_the_node_at_once(self):
+        prefix = self.folder / "nowhere" / "live"
+        node = self.start_node("live", prefix, self.start_master())
+        output, _ = node.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(node.returncode, 1, output)
+        self.assertIn(f"parameter ~output: cannot write {prefix}.bag: folder {prefix.parent} cannot be written to", output)
+
+    def test_a_folder_that_went_away_is_named_without_advice_for_the_program(self):
+        folder = self.folder / "gone"
+        folder.mkdir()
+        node, environment = self.node_with_views("live", folder / "live")
+        folder.rmdir()
+        answer = run_in_workspace("rosservice call --wait /coverage_node/calibrate", env=environment)
+        self.assertIn(f"to be written to {folder}/live.bag", answer.stdout)
+        output = interrupt_after("failed:", node).output
+        self.assertIn(f"folder {folder} cannot be written to", output)
+        self.assertNotIn("--bag", output)
 
     def test_ctrl_c_ends_a_calibration_and_leaves_whole_files_alone(self):
         node, environment = self.node_with_views("live", self.folder / "stopped")

@@ -9,6 +9,7 @@
 #include "calibrate_cameras/inputs.h"
 #include "calibrate_cameras/outputs.h"
 #include "calibrate_cameras/report.h"
+#include "common/output.h"
 #include "common/program.h"
 #include "tartan_calib/io/camchain.h"
 #include "tartan_calib/ros/bag_writer.h"
@@ -113,7 +114,7 @@ bool CalibrationJob::start(std::vector<KeptView> views) {
 void CalibrationJob::run(const std::vector<KeptView>& views) {
   const Tell& tell = listener_.progress;
   finished_ = "its views were not written";
-  checkWritable(outputPrefix(arguments_));
+  checkFolderOf(arguments_.recording);
   writeBag(views, arguments_.topics, arguments_.recording);
   num_written_ = views.size();
   finished_ = "its views are in " + arguments_.recording + ", no other file was written";

@@ -195,9 +195,10 @@ bool CoverageNode::onCalibrate(std_srvs::Trigger::Request& /*request*/, std_srvs
     return true;
   }
   response.success = job_.start(guide_.kept()) ? 1 : 0;
-  response.message = response.success != 0 ? "calibrating " + std::to_string(guide_.kept().size()) + " views, written to " +
-                                                 options_.calibration.recording + "; see ~progress"
-                                           : "the last calibration still runs; see ~progress";
+  response.message = response.success != 0
+                         ? "calibrating " + std::to_string(guide_.kept().size()) + " views, to be written to " +
+                               options_.calibration.recording + "; see ~progress"
+                         : "the last calibration still runs; see ~progress";
   return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "calibrate_cameras/outputs.h"
 #include "calibrate_cameras/session.h"
+#include "common/output.h"
 #include "common/program.h"
 #include "tartan_calib/io/camchain.h"
 
@@ -26,6 +27,15 @@ std::string recordedTopic(const std::string& topic) {
 void append(Words& words, const std::string& flag, const Words& values) {
   words.push_back(flag);
   words.insert(words.end(), values.begin(), values.end());
+}
+
+/// Views take minutes to collect: a folder that cannot hold them is found out before the first one.
+void checkOutput(const std::string& recording) {
+  try {
+    checkFolderOf(recording);
+  } catch (const InputError& error) {
+    throw InputError(std::string("parameter ~output: ") + error.what());
+  }
 }
 
 guidance::GuideOptions guideOptions(Parameters& parameters, const pipeline::CalibrateOptions& calibrate) {
@@ -59,6 +69,7 @@ CoverageOptions coverageOptions(Parameters parameters, const ::ros::NodeHandle& 
   words.insert(words.end(), extra.begin(), extra.end());
   options.calibration = parseArguments(words);
   checkInputsStay(options.calibration);
+  checkOutput(options.calibration.recording);
   options.command = commandText("calibrate_cameras", words);
   for (const std::string& model : options.calibration.calibrate.models) {
     camera::modelByName(model);
