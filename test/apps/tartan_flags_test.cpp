@@ -135,10 +135,12 @@ TEST(TartanFlags, KnowTheRefinementInEverySpelling) {
 }
 
 TEST(TartanFlags, SayWhyAFlagHasNoEffect) {
-  for (const Words& words : {Words{"--min-init-corners-autocomplete", "24"}, Words{"--min-tag-size-autocomplete", "0"},
-                             Words{"--refine-magnitude-reject", "2.0"}, Words{"--symmetry-edge-threshold", "10"},
-                             Words{"--polar_setting", "1"}, Words{"--polar_cutoff", "50"}, Words{"--force_all"},
-                             Words{"--outputMatlab"}, Words{"--export-dataset-dir", "x.bin"}}) {
+  for (const Words& words :
+       {Words{"--min-init-corners-autocomplete", "24"}, Words{"--min-tag-size-autocomplete", "0"},
+        Words{"--refine-magnitude-reject", "2.0"}, Words{"--symmetry-edge-threshold", "10"}, Words{"--polar_setting", "1"},
+        Words{"--polar_cutoff", "50"}, Words{"--force_all"}, Words{"--outputMatlab"}, Words{"--export-dataset-dir", "x.bin"},
+        Words{"--qr-tol", "0.02"}, Words{"--mi-tol", "-1"}, Words{"--no-shuffle"}, Words{"--plot"}, Words{"--plot-outliers"},
+        Words{"--plot-o"}, Words{"--show-extraction"}}) {
     const TartanCommand command = translateTartanFlags(words);
     EXPECT_TRUE(command.words.empty()) << words[0];
     ASSERT_EQ(command.notes.size(), 1U) << words[0];
@@ -172,6 +174,7 @@ TEST(TartanFlags, TellThatTheDefaultViewLooksSideways) {
 TEST(TartanFlags, NameWhatIsWrong) {
   expectUsageError({"--debug-modes", "everything"}, "everything");
   expectUsageError({"--save_dir"}, "--save_dir needs a value");
+  expectUsageError({"--mi-tol", "small"}, "--mi-tol needs a number, not 'small'");
   expectUsageError({"--debug", "none"}, "ambiguous");
   expectUsageError({"--no-such-flag"}, "no-such-flag");
   expectUsageError({"--projections", "fisheye"}, "fisheye");

@@ -100,11 +100,13 @@ void applyDebugModes(const Given& given, TartanCommand& command) {
   }
 }
 
-/// Every flag that TartanCalib has and calibrate_cameras has not, or not with this meaning.
+/// Every flag that TartanCalib has and calibrate_cameras has not, not with this meaning, or without effect.
 const std::vector<TartanFlag>& tartanFlags() {
   const auto check_number = [](const Given& given, TartanCommand& /*command*/) { number(given); };
   const auto check_pixels = [](const Given& given, TartanCommand& /*command*/) { wholePixels(given); };
   const std::string every_view = "every view takes part, weighted by the uncertainty of its corners";
+  const std::string one_batch = "every view is used, and all are solved in one batch";
+  const std::string no_windows = "no windows are opened; the report has the plots";
   static const std::vector<TartanFlag> flags = {
       {"projections", kAnyNumber, applyProjections},
       {"debug-modes", kAnyNumber, applyDebugModes},
@@ -132,6 +134,13 @@ const std::vector<TartanFlag>& tartanFlags() {
       withoutEffect("polar-setting", Value::kNumber, every_view),
       withoutEffect("polar-cutoff", Value::kNumber, every_view),
       withoutEffect("force-all", Value::kNone, every_view),
+      withoutEffect("qr-tol", Value::kNumber, one_batch),
+      withoutEffect("mi-tol", Value::kNumber, one_batch),
+      withoutEffect("no-shuffle", Value::kNone,
+                    "all views are solved in one batch, in which their order makes no difference"),
+      withoutEffect("plot", Value::kNone, no_windows),
+      withoutEffect("plot-outliers", Value::kNone, no_windows),
+      withoutEffect("show-extraction", Value::kNone, no_windows),
   };
   return flags;
 }
@@ -170,8 +179,9 @@ const TartanFlag* findFlag(const std::string& word) {
     }
   }
   const Words others = kalibrFlags();
-  const bool is_other =
-      std::any_of(others.begin(), others.end(), [&](const auto& other) { return beginsWith(other, name); });
+  const bool is_other = std::any_of(others.begin(), others.end(), [&](const auto& other) {
+    return beginsWith(other, name) && (found == nullptr || other != found->name);
+  });
   return is_other ? nullptr : found;
 }
 
