@@ -30,21 +30,14 @@ cv::Mat lookUpTable(const camera::Camera& camera, const VirtualPinhole& pinhole)
   const float max_x = static_cast<float>(camera.width) - kNowhere_px;
   const float max_y = static_cast<float>(camera.height) - kNowhere_px;
   cv::Mat table(pinhole.height, pinhole.width, CV_32FC2);
-  std::visit(
-      [&](const auto& model) {
-        for (int row = 0; row < pinhole.height; ++row) {
-          auto* pixels = table.ptr<cv::Vec2f>(row);
-          for (int col = 0; col < pinhole.width; ++col) {
-            Eigen::Vector2d px;
-            if (!model.project(rayOf(pinhole, {col, row}), px)) {
-              px.setConstant(kNowhere_px);
-            }
-            pixels[col] = {std::clamp(static_cast<float>(px.x()), kNowhere_px, max_x),
-                           std::clamp(static_cast<float>(px.y()), kNowhere_px, max_y)};
-          }
-        }
-      },
-      camera.model);
+  for (int row = 0; row < pinhole.height; ++row) {
+    auto* pixels = table.ptr<cv::Vec2f>(row);
+    for (int col = 0; col < pinhole.width; ++col) {
+      const auto px = project(camera.model, rayOf(pinhole, {col, row}));
+      const Eigen::Vector2f at = px ? Eigen::Vector2f(px->cast<float>()) : Eigen::Vector2f::Constant(kNowhere_px);
+      pixels[col] = {std::clamp(at.x(), kNowhere_px, max_x), std::clamp(at.y(), kNowhere_px, max_y)};
+    }
+  }
   return table;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <regex>
 #include <type_traits>
 
 #include "random.h"
@@ -61,6 +60,19 @@ DataSheet goPro(int width, int height) {
   return fullFrame(width, height, 61.3 * kRadPerDegree, radius);
 }
 
+/// The number in a name like fisheye150; empty where the name is not the prefix and a number.
+std::optional<double> numberAfter(const std::string& prefix, const std::string& name) {
+  constexpr std::size_t kMaxDigits = 3;
+  if (name.compare(0, prefix.size(), prefix) != 0) {
+    return std::nullopt;
+  }
+  const std::string digits = name.substr(prefix.size());
+  if (digits.empty() || digits.size() > kMaxDigits || digits.find_first_not_of("0123456789") != std::string::npos) {
+    return std::nullopt;
+  }
+  return std::stod(digits);
+}
+
 DataSheet dataSheet(const LensRequest& request) {
   const auto width = [&](int own) { return request.width > 0 ? request.width : own; };
   const auto height = [&](int own) { return request.height > 0 ? request.height : own; };
@@ -71,10 +83,11 @@ DataSheet dataSheet(const LensRequest& request) {
   if (request.lens == "gopro150") {
     return goPro(width(1280), height(960));
   }
-  std::smatch match;
-  if (std::regex_match(request.lens, match, std::regex("(fisheye|pinhole)([0-9]{2,3})"))) {
-    const double half_angle_rad = 0.5 * std::stod(match[2]) * kRadPerDegree;
-    const bool is_fisheye = match[1] == "fisheye";
+  const std::optional<double> fisheye_degrees = numberAfter("fisheye", request.lens);
+  const std::optional<double> pinhole_degrees = numberAfter("pinhole", request.lens);
+  if (fisheye_degrees || pinhole_degrees) {
+    const bool is_fisheye = fisheye_degrees.has_value();
+    const double half_angle_rad = 0.5 * (is_fisheye ? *fisheye_degrees : *pinhole_degrees) * kRadPerDegree;
     const double max_degrees = is_fisheye ? 260.0 : 130.0;
     if (half_angle_rad >= 10.0 * kRadPerDegree && 2.0 * half_angle_rad <= (max_degrees + 1e-9) * kRadPerDegree) {
       constexpr double kMinCircleRad = 85.0 * kRadPerDegree;  // smaller ones are cut by the sensor

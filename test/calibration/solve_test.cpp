@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "solve_scenes.h"
 #include "tartan_calib/error.h"
+#include "tartan_calib/geometry/linear_solve.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -72,7 +72,7 @@ TEST(Solve, ErrorsFollowThePredictedCovarianceOverManyRecordings) {
     options.remove_outliers = false;
     const Solution solution = solve(noisyProblem(scene, kNoise_px, 100 + seed), options);
     const Eigen::VectorXd error = errorVector(solution.rig, scene.rig);
-    sum_of_chi_squares += error.dot(solution.covariance.ldlt().solve(error));
+    sum_of_chi_squares += error.dot(geometry::solveSymmetric(solution.covariance, error));
     num_parameters = error.size();
   }
   // Chi-square of kRecordings * num_parameters degrees of freedom, four of its stdevs.

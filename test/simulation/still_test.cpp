@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -74,7 +74,7 @@ Eigen::Vector2d pull(const cv::Mat1f& white, const BoardPattern& pattern, const 
       right += gradient * error;
     }
   }
-  return -normal.ldlt().solve(right);
+  return -normal.inverse() * right;
 }
 
 TEST(DrawBoard, movesNoCornerByMoreThanFiveThousandthsOfAPixel) {
