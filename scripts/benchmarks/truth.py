@@ -49,10 +49,11 @@ class Truth:
 
 
 class Score:
-    """Corners of a file against the truth. `row`, `error_px`: of those that the truth has within the image."""
+    """Corners of a file, but for those that its solve rejected, against the truth. `row`, `error_px`: of those that the truth has
+    within the image."""
 
     def __init__(self, truth, path):
-        _, corners = read_corners(path)
+        corners = [corner for corner in read_corners(path)[1] if corner["used"] != "0"]
         self.num_reported = len(corners)
         rows = np.array([truth.row_of.get((int(corner["stamp_ns"]), int(corner["corner_id"])), -1) for corner in corners], int)
         px = np.array([[float(corner["u_px"]), float(corner["v_px"])] for corner in corners]).reshape(-1, 2)

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "tartan_calib/error.h"
+#include "tartan_calib/text.h"
+
 namespace tartan_calib::calibration {
 namespace {
 
@@ -30,6 +33,28 @@ void collectGroup(const Eigen::MatrixXi& shared_views, int camera_index, std::ve
       collectGroup(shared_views, other, is_reached, group);
     }
   }
+}
+
+std::string groupNames(const std::vector<std::vector<int>>& groups) {
+  std::string text;
+  for (const std::vector<int>& group : groups) {
+    std::string members;
+    for (const int camera_index : group) {
+      members += (members.empty() ? "" : " ") + cameraName(camera_index);
+    }
+    text += (text.empty() ? "{" : ", {") + members + "}";
+  }
+  return text;
+}
+
+std::string pairCounts(const Eigen::MatrixXi& shared_views) {
+  std::string text;
+  for (int a = 0; a < shared_views.rows(); ++a) {
+    for (int b = a + 1; b < shared_views.cols(); ++b) {
+      text += (text.empty() ? "" : ", ") + cameraName(a) + "-" + cameraName(b) + " " + std::to_string(shared_views(a, b));
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -63,6 +88,14 @@ std::vector<std::vector<int>> connectedGroups(const Eigen::MatrixXi& shared_view
     }
   }
   return groups;
+}
+
+void requireConnected(const Eigen::MatrixXi& shared_views, const std::string& shared, const std::string& remedy) {
+  const std::vector<std::vector<int>> groups = connectedGroups(shared_views);
+  if (groups.size() > 1) {
+    throw CalibrationError("Cameras are not connected through mutual observations: groups " + groupNames(groups) + "; " +
+                           shared + ": " + pairCounts(shared_views) + "; " + remedy);
+  }
 }
 
 }  // namespace tartan_calib::calibration

@@ -18,37 +18,6 @@ using geometry::Rigid3;
 using observation::CameraView;
 using observation::View;
 
-std::string groupNames(const std::vector<std::vector<int>>& groups) {
-  std::string text;
-  for (const std::vector<int>& group : groups) {
-    std::string members;
-    for (const int camera_index : group) {
-      members += (members.empty() ? "" : " ") + cameraName(camera_index);
-    }
-    text += (text.empty() ? "{" : ", {") + members + "}";
-  }
-  return text;
-}
-
-std::string pairCounts(const Eigen::MatrixXi& shared_views) {
-  std::string text;
-  for (int a = 0; a < shared_views.rows(); ++a) {
-    for (int b = a + 1; b < shared_views.cols(); ++b) {
-      text += (text.empty() ? "" : ", ") + cameraName(a) + "-" + cameraName(b) + " " + std::to_string(shared_views(a, b));
-    }
-  }
-  return text;
-}
-
-void requireConnected(const Eigen::MatrixXi& shared_views) {
-  const std::vector<std::vector<int>> groups = connectedGroups(shared_views);
-  if (groups.size() > 1) {
-    throw CalibrationError("Cameras are not connected through mutual observations: groups " + groupNames(groups) +
-                           "; views in which both know where the board is: " + pairCounts(shared_views) +
-                           "; show the board to cameras of different groups at the same time, or raise --approx-sync");
-  }
-}
-
 ViewPoses posesOf(const std::vector<camera::Camera>& cameras, const std::vector<Eigen::Vector3d>& target_points,
                   const View& view) {
   ViewPoses poses;
@@ -108,7 +77,8 @@ Problem initializeRig(const std::vector<camera::Camera>& cameras, const std::vec
     }
   });
   if (!known_rig) {
-    requireConnected(sharedPoses(poses, num_cameras));
+    requireConnected(sharedPoses(poses, num_cameras), "views in which both know where the board is",
+                     "show the board to cameras of different groups at the same time, or raise --approx-sync");
   }
   const std::vector<Rigid3> T_cam_rig = known_rig ? std::vector<Rigid3>() : treeExtrinsics(poses, num_cameras);
   Problem problem;

@@ -22,6 +22,9 @@ constexpr int kMaxSelections = 4;                                 ///< rounds of
 /// last when it would move no parameter by more than a thousandth of its stdev.
 constexpr double kAnnealingTolerance = 1e-4;
 constexpr double kFinalAccuracy = 1e-3;
+/// Steps that fail although they promise to move parameters by so much, in stdevs: ds-none has a valley so flat and bent
+/// where few views are narrow. There the place in the valley is of no consequence for the image.
+constexpr double kNegligible = 0.05;
 constexpr double kExactResidual_px = 1e-9;  ///< data without noise are fitted to this rms
 
 struct UsedCorners {
@@ -98,7 +101,7 @@ class BatchSolve {
         losses.push_back({RobustLoss::Kind::kCauchy, kCauchyWidths[static_cast<std::size_t>(stage)] * sigma});
       }
       batch_.setLosses(std::move(losses));
-      minimize(stage, kAnnealingTolerance);
+      minimize(stage, kAnnealingTolerance, kAnnealingTolerance);
     }
   }
 
@@ -121,17 +124,20 @@ class BatchSolve {
       model_errors_px_ = modelErrors(batch_);
       setModelErrors(model_errors_px_, batch_);
       // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
-      minimize(numAnnealingStages() + i, kFinalAccuracy * kFinalAccuracy / (2.0 * num_corners));
+      const double ratio_per_stdev2 = 1.0 / (2.0 * num_corners);
+      minimize(numAnnealingStages() + i, kFinalAccuracy * kFinalAccuracy * ratio_per_stdev2,
+               kNegligible * kNegligible * ratio_per_stdev2);
     }
   }
 
-  void minimize(int stage, double relative_tolerance) {
+  void minimize(int stage, double relative_tolerance, double negligible_ratio) {
     const double num_residuals = 2.0 * std::max(1, usedCorners(batch_).num_corners);
     solver::Options options;
     options.linear_solver = solverChoice(options_.linear_solver);
     options.num_threads = options_.num_threads;
     options.max_iterations = options_.max_iterations;
     options.relative_tolerance = relative_tolerance;
+    options.negligible_ratio = negligible_ratio;
     options.absolute_tolerance = 0.5 * num_residuals * kExactResidual_px * kExactResidual_px;
     if (options_.progress) {
       options.progress = [&, stage, num_residuals](int iteration, double cost) {

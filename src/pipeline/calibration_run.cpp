@@ -194,6 +194,7 @@ void CalibrationRun::solveTogether() {
     listener_.rig_started(problem);
   }
   solve(problem);
+  checkSolution(result_.solution, !known_rig_);
 }
 
 std::vector<CameraCorners> CalibrationRun::recoverAll(const std::vector<CameraStream>& streams) {
@@ -223,7 +224,7 @@ void CalibrationRun::solveAgain(RoundSummary& summary) {
     usable_[i] = imagesWithCorners(corners_[i]);
   }
   solve(startRig());
-  checkSolution(result_.solution);
+  checkSolution(result_.solution, !options_.known_rig);
   describeSolution(*known_rig_, result_.solution, target_points_, summary);
 }
 
@@ -243,6 +244,7 @@ bool CalibrationRun::runRound(const std::vector<CameraStream>& streams) {
          error.what());
     return false;
   }
+  rejected_.update(recovered, corners_);
   result_.rounds.push_back(summary);
   if (listener_.round_finished) {
     listener_.round_finished(summary);
@@ -259,17 +261,18 @@ void CalibrationRun::describe(CalibrationResult& result) const {
   }
   result.unused_images = unusedImages(corners_, result.solution);
   countUsedImages(result.solution, result.cameras);
+  rejected_.addTo(result);
 }
 
 CalibrationResult CalibrationRun::finish() {
-  checkSolution(result_.solution);
   begin(Stage::kStatistics);
+  const std::optional<std::string> pupil_hint = pupilHint(result_.solution, solveOptions(), target_points_);
   describe(result_);
   for (const std::string& warning : resultWarnings(result_)) {
     warn(warning);
   }
-  if (const auto hint = pupilHint(result_.solution, solveOptions(), target_points_)) {
-    warn(*hint);
+  if (pupil_hint) {
+    warn(*pupil_hint);
   }
   end();
   return std::move(result_);

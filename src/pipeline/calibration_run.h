@@ -3,6 +3,7 @@
 #include <chrono>
 #include <vector>
 
+#include "rejected_corners.h"
 #include "search_history.h"
 #include "tartan_calib/pipeline/calibrate.h"
 
@@ -55,6 +56,7 @@ class CalibrationRun {
   std::vector<camera::Camera> started_;
   std::optional<calibration::Rig> known_rig_;  ///< extrinsics to start from
   std::vector<SearchHistory> searched_;        ///< by camera
+  RejectedCorners rejected_;                   ///< by the rounds
   CalibrationResult result_;
   Progress stage_;
   Clock::time_point stage_begin_;

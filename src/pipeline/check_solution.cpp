@@ -1,7 +1,9 @@
 #include "check_solution.h"
 
-#include <cmath>
+#include <algorithm>
 
+#include "tartan_calib/calibration/camera_graph.h"
+#include "tartan_calib/calibration/intrinsics_uncertainty.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/text.h"
 
@@ -11,30 +13,43 @@ namespace {
 /// Stdev of a focal length over the focal length. Usable calibrations stay below 0.01; those of too few views below 0.1.
 constexpr double kMeaninglessFocal_ratio = 0.2;
 
-/// The larger one of fu and fv.
-double focalUncertainty(const calibration::Solution& solution, int camera_index) {
-  constexpr int kNumFocal = 2;
-  const camera::CameraModel& model = solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model;
-  const int focal = camera::focalIndex(model);
-  const Eigen::VectorXd parameters = camera::parameters(model);
-  const int row = calibration::intrinsicsRow(solution.rig, camera_index) + focal;
-  double largest = 0.0;
-  for (int i = 0; i < kNumFocal; ++i) {
-    const double variance_px2 = std::max(0.0, solution.covariance(row + i, row + i));
-    largest = std::max(largest, std::sqrt(variance_px2) / std::abs(parameters(focal + i)));
+/// The views with only those corners that the solve used.
+std::vector<observation::View> usedViews(const calibration::Solution& solution) {
+  std::vector<observation::View> views = solution.views;
+  for (observation::View& view : views) {
+    for (observation::CameraView& image : view.cameras) {
+      auto& corners = image.corners;
+      corners.erase(std::remove_if(corners.begin(), corners.end(), [](const auto& corner) { return !corner.used; }),
+                    corners.end());
+    }
   }
-  return largest;
+  return views;
 }
 
-}  // namespace
+void checkAgreement(const calibration::Solution& solution, bool is_rig_open) {
+  for (std::size_t i = 0; i < solution.counts.size(); ++i) {
+    if (solution.counts[i].used == 0) {
+      throw CalibrationError(
+          cameraName(i) +
+          ": none of its corners agrees with the other cameras: check that they are in sync (inspect_bag) "
+          "and fixed to each other");
+    }
+  }
+  if (is_rig_open) {
+    const int num_cameras = static_cast<int>(solution.rig.cameras.size());
+    calibration::requireConnected(calibration::cameraGraph(usedViews(solution), num_cameras).shared_views,
+                                  "views in which corners of both agree",
+                                  "check that the cameras are in sync (inspect_bag) and fixed to each other");
+  }
+}
 
-void checkSolution(const calibration::Solution& solution) {
+void checkFocalLengths(const calibration::Solution& solution) {
   constexpr double kPercent = 100.0;
   if (solution.status == calibration::SolveStatus::kConverged || solution.covariance.size() == 0) {
     return;
   }
   for (std::size_t i = 0; i < solution.rig.cameras.size(); ++i) {
-    const double uncertainty_ratio = focalUncertainty(solution, static_cast<int>(i));
+    const double uncertainty_ratio = calibration::focalStdevRatio(solution, static_cast<int>(i));
     if (uncertainty_ratio > kMeaninglessFocal_ratio) {
       throw CalibrationError(
           cameraName(i) +
@@ -45,6 +60,13 @@ void checkSolution(const calibration::Solution& solution) {
                  solution.rig.cameras.size() > 1 ? " and that the cameras are in sync (inspect_bag)" : ""));
     }
   }
+}
+
+}  // namespace
+
+void checkSolution(const calibration::Solution& solution, bool is_rig_open) {
+  checkAgreement(solution, is_rig_open);
+  checkFocalLengths(solution);
 }
 
 }  // namespace tartan_calib::pipeline

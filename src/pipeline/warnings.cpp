@@ -56,9 +56,6 @@ class CameraWarnings {
         camera_(result.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera) {}
 
   std::vector<std::string> collect() {
-    if (const std::optional<std::string> note = contradictionNote(result_, index_)) {
-      return {*note};
-    }
     checkAmount();
     checkCoverage();
     checkResiduals();
@@ -148,16 +145,6 @@ class CameraWarnings {
 };
 
 }  // namespace
-
-std::optional<std::string> contradictionNote(const CalibrationResult& result, int camera_index) {
-  const calibration::CornerCounts& counts = result.solution.counts[static_cast<std::size_t>(camera_index)];
-  if (counts.used > 0 || result.cameras.size() < 2) {
-    return std::nullopt;
-  }
-  return cameraName(camera_index) +
-         ": none of its corners agrees with the other cameras: check that they are in sync (inspect_bag) and fixed to each "
-         "other";
-}
 
 std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index) {
   const auto at = static_cast<std::size_t>(camera_index);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tartan_calib/calibration/compare.h"
+#include "tartan_calib/calibration/intrinsics_uncertainty.h"
 #include "tartan_calib/report/cross_validation.h"
 #include "tartan_calib/report/uncertainty.h"
 
@@ -116,7 +117,7 @@ void addUncertainty(const calibration::Solution& solution, int camera_index, Cam
   for (std::size_t i = 0; i < stdevs_px.size(); ++i) {
     camera.map.samples[i].stdev_px = stdevs_px[i];
   }
-  camera.focal_stdev_ratio = focalStdevRatio(solution, camera_index);
+  camera.focal_stdev_ratio = calibration::focalStdevRatio(solution, camera_index);
 }
 
 void addDifference(const std::array<calibration::Solution, 2>& halves, int camera_index, CameraAnalysis& camera) {

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "tartan_calib/calibration/intrinsics_uncertainty.h"
 #include "tartan_calib/geometry/linear_solve.h"
 
 namespace tartan_calib::report {
 namespace {
-
-constexpr double kOffAxis_rad = 1e-3;  ///< small against the lens, large against rounding
 
 /// First-order change of a pixel with the camera's parameters and with a rotation of its frame.
 struct PixelChange {
@@ -23,12 +22,6 @@ std::optional<PixelChange> pixelChange(const camera::CameraModel& model, const E
     return std::nullopt;
   }
   return PixelChange{J_px_parameters, -J_px_ray * geometry::hat(*ray)};
-}
-
-Eigen::MatrixXd parameterCovariance(const calibration::Solution& solution, int camera_index) {
-  const int row = calibration::intrinsicsRow(solution.rig, camera_index);
-  const int count = camera::numParameters(solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model);
-  return solution.covariance.block(row, row, count, count);
 }
 
 /// The rotation that takes up a change of the parameters best over the pixels: rotation = K * change.
@@ -57,7 +50,7 @@ std::vector<std::optional<double>> projectionStdevs(const calibration::Solution&
                                                     const std::vector<Eigen::Vector2d>& aligned_px,
                                                     const std::vector<Eigen::Vector2d>& samples_px) {
   const camera::CameraModel& model = solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model;
-  const Eigen::MatrixXd covariance = parameterCovariance(solution, camera_index);
+  const Eigen::MatrixXd covariance = calibration::intrinsicsCovariance(solution, camera_index);
   const Eigen::Matrix<double, 3, Eigen::Dynamic> K = alignment(model, aligned_px);
   std::vector<std::optional<double>> stdevs_px;
   for (const Eigen::Vector2d& px : samples_px) {
@@ -69,17 +62,6 @@ std::vector<std::optional<double>> projectionStdevs(const calibration::Solution&
     }
   }
   return stdevs_px;
-}
-
-double focalStdevRatio(const calibration::Solution& solution, int camera_index) {
-  const camera::CameraModel& model = solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera.model;
-  camera::ParameterJacobian J_left;
-  camera::ParameterJacobian J_right;
-  const auto left_px = camera::project(model, {-std::sin(kOffAxis_rad), 0.0, std::cos(kOffAxis_rad)}, nullptr, &J_left);
-  const auto right_px = camera::project(model, {std::sin(kOffAxis_rad), 0.0, std::cos(kOffAxis_rad)}, nullptr, &J_right);
-  const double width_px = right_px->x() - left_px->x();
-  const Eigen::VectorXd gradient = (J_right.row(0) - J_left.row(0)).transpose();
-  return std::sqrt(std::max(0.0, gradient.dot(parameterCovariance(solution, camera_index) * gradient))) / width_px;
 }
 
 }  // namespace tartan_calib::report

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tartan_calib/pipeline/warnings.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::report {
@@ -67,14 +66,9 @@ class CameraJudge {
         counts_(result.solution.counts[index]),
         analysis_(analysis.cameras[index]),
         name_(cameraName(index)),
-        contradiction_(pipeline::contradictionNote(result, static_cast<int>(index))),
         reasons_(reasons) {}
 
   void judge() {
-    if (contradiction_) {
-      reasons_.push_back({Grade::kRepeat, *contradiction_});
-      return;
-    }
     checkViews();
     checkReach();
     checkRegions();
@@ -85,9 +79,6 @@ class CameraJudge {
   }
 
   std::string fact() const {
-    if (contradiction_) {
-      return name_ + ": no corner was used";
-    }
     return name_ + format(": corners to %.0f degrees from the axis, rms %.3f px, projection certain to %.3f px (median)",
                           statistics_.max_polar_angle_rad * kDegreesPerRadian, statistics_.rms_px,
                           analysis_.median_stdev_px);
@@ -140,9 +131,10 @@ class CameraJudge {
     const int rejected = counts_.outliers + counts_.unprojectable + counts_.unsupported;
     const double ratio = static_cast<double>(rejected) / std::max(1, rejected + counts_.used);
     add(kRejected_ratio, ratio,
-        format(
-            "%.0f %% of the corners were rejected (%d outliers, %d that the model cannot project): look at the worst frames",
-            100.0 * ratio, counts_.outliers, counts_.unprojectable));
+        format("%.0f %% of the corners were rejected (%d outliers, %d that the model cannot project): look at the worst "
+               "frames%s",
+               100.0 * ratio, counts_.outliers, counts_.unprojectable,
+               result_.cameras.size() > 1 ? ", and check the cameras' sync (inspect_bag)" : ""));
   }
 
   /// Residuals that point the same way at the same angle are no noise: the model cannot follow the lens.
@@ -186,7 +178,6 @@ class CameraJudge {
   const calibration::CornerCounts& counts_;
   const CameraAnalysis& analysis_;
   const std::string name_;
-  const std::optional<std::string> contradiction_;
   std::vector<Reason>& reasons_;
 };
 

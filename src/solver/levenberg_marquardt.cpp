@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -17,9 +18,6 @@ constexpr double kInitialDamping = 1e-6;  ///< relative to diag(H): close to Gau
 constexpr double kMinDamping = 1e-12;     ///< keeps undetermined directions solvable
 constexpr double kNewtonDamping = 1e-9;   ///< up to here a step counts as a Gauss-Newton step
 constexpr double kMaxDamping = 1e12;
-/// Part of the cost that a failed step may have promised at the minimum. In a valley that is bent as well as nearly flat the
-/// quadratic model promises so much without end; what is left to gain moves parameters by 1e-3 of their uncertainty or so.
-constexpr double kNegligible_ratio = 1e-8;
 constexpr double kDampingDecrease = 0.3;
 constexpr double kDampingIncrease = 3.0;  ///< grows with every rejection in a row
 constexpr int kMaxCorrections = 2;
@@ -59,7 +57,10 @@ class Minimizer {
     const std::optional<Candidate> candidate = propose(equations_);
     if (candidate && candidate->promised <= tolerance()) {
       tryUndamped();
-    } else if (!candidate || !tryStep(*candidate)) {
+    } else if (!candidate) {
+      failed_promise_ = std::numeric_limits<double>::infinity();  // who knows
+      reject();
+    } else if (!tryStep(*candidate)) {
       reject();
     }
   }
@@ -71,10 +72,16 @@ class Minimizer {
     if (damping_ <= kNewtonDamping) {
       finish(Status::kConverged);
     } else if (undamped_failed_) {
-      finish(failed_promise_ <= kNegligible_ratio * equations_.cost ? Status::kConverged : Status::kStalled);
+      giveUp();
     } else {
       damping_ = kNewtonDamping;
     }
+  }
+
+  /// No step lowers the cost.
+  void giveUp() {
+    const bool is_negligible = failed_promise_ <= std::max(tolerance(), options_.negligible_ratio * equations_.cost);
+    finish(is_negligible ? Status::kConverged : Status::kStalled);
   }
 
   bool tryStep(const Candidate& candidate) {
@@ -128,7 +135,7 @@ class Minimizer {
     damping_ *= increase_;
     increase_ *= kDampingIncrease;
     if (damping_ > kMaxDamping) {
-      finish(Status::kStalled);
+      giveUp();
     }
   }
 

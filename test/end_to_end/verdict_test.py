@@ -134,14 +134,6 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertEqual(verdict[0], "repeat")
         self.reason(verdict, r"repeat: the views do not determine cam0 projection\[0\], .*: record the board at more angles and distances")
 
-    def test_models_and_delays_that_fit_together_at_no_point(self):
-        bag = self.recordings.simulate("endless", *RIG[:4], "--cameras", 4, "--views", 5, "--yaw", 8, "--reach", 0.1, "--tilt", 5,
-                                       "--delay", 4)
-        verdict = self.verdict(bag, ["eucm-none", "eucm-none", "pinhole-radtan", "ds-none"])
-        self.assertEqual(verdict[0], "repeat")
-        iterations, = self.reason(verdict, r"repeat: the solver did not converge within (\d+) iterations")
-        self.assertGreater(iterations, 100)
-
     def test_frames_that_a_rolling_shutter_bent(self):
         changed = [(topic, sheared(image, 12) if index % 6 == 0 else image, time)
                    for index, (topic, image, time) in enumerate(messages(self.pinhole))]

@@ -44,14 +44,6 @@ void expectOneWarning(const CalibrationResult& result, const std::string& part) 
 
 TEST(ResultWarnings, AGoodCalibrationHasNone) { EXPECT_TRUE(resultWarnings(goodResult()).empty()); }
 
-TEST(ResultWarnings, OfACameraThatLostAllItsCornersNothingElseIsSaid) {
-  CalibrationResult result = goodResult();
-  result.solution.rig.cameras.push_back(result.solution.rig.cameras[0]);
-  result.solution.counts.emplace_back();
-  result.cameras.emplace_back();
-  expectOneWarning(result, "cam1: none of its corners agrees with the other cameras");
-}
-
 TEST(ResultWarnings, FewViewsOrCornersAreUncertain) {
   CalibrationResult result = goodResult();
   result.cameras[0].statistics.num_views = 2;

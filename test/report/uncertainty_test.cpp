@@ -7,6 +7,7 @@
 
 #include "solved_scene.h"
 #include "tartan_calib/calibration/compare.h"
+#include "tartan_calib/calibration/intrinsics_uncertainty.h"
 #include "tartan_calib/report/cross_validation.h"
 
 namespace tartan_calib::report {
@@ -80,7 +81,7 @@ TEST(UncertaintyTest, OfTheFocalLengthIsTheScatterOfTheScaleOnTheAxis) {
     const double ratio = scale(model) / scale(fisheye().model) - 1.0;
     variance += ratio * ratio / kTrials;
   });
-  const double predicted = focalStdevRatio(solved(noisyScene(1)).solution, 0);
+  const double predicted = calibration::focalStdevRatio(solved(noisyScene(1)).solution, 0);
   EXPECT_NEAR(std::sqrt(variance) / predicted, 1.0, kRatioTolerance);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "tartan_calib/observation/observation.h"
@@ -19,5 +20,9 @@ CameraGraph cameraGraph(const std::vector<observation::View>& views, int num_cam
 
 /// Connected components of cameras of which every two neighbours share a view.
 std::vector<std::vector<int>> connectedGroups(const Eigen::MatrixXi& shared_views);
+
+/// Throws CalibrationError with the groups and the shared views per pair where cameras are not connected. `shared` says what
+/// counts as a shared view, `remedy` what helps.
+void requireConnected(const Eigen::MatrixXi& shared_views, const std::string& shared, const std::string& remedy);
 
 }  // namespace tartan_calib::calibration

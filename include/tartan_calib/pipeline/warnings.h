@@ -11,9 +11,6 @@ namespace tartan_calib::pipeline {
 /// Says so where corners beyond 90 degrees took part in a model that Kalibr and OpenCV end at 90 degrees.
 std::optional<std::string> hemisphereNote(const CalibrationResult& result, int camera_index);
 
-/// Says so where the solve rejected every corner of one camera of a rig.
-std::optional<std::string> contradictionNote(const CalibrationResult& result, int camera_index);
-
 /// What the images show in place of the target, where most say the same: a board of another size, mirrored tags, tags with
 /// another border, two boards.
 std::optional<std::string> boardNote(const CameraCorners& corners, const target::Target& target);

@@ -16,7 +16,4 @@ std::vector<std::optional<double>> projectionStdevs(const calibration::Solution&
                                                     const std::vector<Eigen::Vector2d>& aligned_px,
                                                     const std::vector<Eigen::Vector2d>& samples_px);
 
-/// Relative stdev of the image scale [px/rad] on the optical axis: of the focal length, whatever the model calls it.
-double focalStdevRatio(const calibration::Solution& solution, int camera_index);
-
 }  // namespace tartan_calib::report
