@@ -1,8 +1,7 @@
 #include "tartan_calib/calibration/information.h"
 
-#include <Eigen/Cholesky>
-
 #include "batch_problem.h"
+#include "tartan_calib/geometry/linear_solve.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -23,11 +22,11 @@ Eigen::MatrixXd viewInformation(const Rig& rig, const std::vector<Eigen::Vector3
   const solver::BlockTerms terms = batch.linearize(0);
 
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(batch.numShared(), batch.numShared());
-  const Eigen::LDLT<solver::BlockMatrix> pose(terms.H_bb);
-  if (!pose.isPositive() || !(pose.rcond() > kMinPoseCondition)) {
+  const std::optional<Eigen::MatrixXd> pose = geometry::solveDefinite(terms.H_bb, terms.H_bs, kMinPoseCondition);
+  if (!pose) {
     return information;
   }
-  const Eigen::MatrixXd reduced = terms.H_ss - terms.H_bs.transpose() * pose.solve(terms.H_bs);
+  const Eigen::MatrixXd reduced = terms.H_ss - terms.H_bs.transpose() * *pose;
   for (std::size_t i = 0; i < terms.shared.size(); ++i) {
     for (std::size_t j = 0; j < terms.shared.size(); ++j) {
       information(terms.shared[i], terms.shared[j]) = reduced(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));

@@ -10,4 +10,13 @@ Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& H, const Eigen::VectorXd& 
 
 Eigen::MatrixXd solveSymmetric(const Eigen::MatrixXd& H, const Eigen::MatrixXd& B) { return H.ldlt().solve(B); }
 
+std::optional<Eigen::MatrixXd> solveDefinite(const Eigen::MatrixXd& H, const Eigen::MatrixXd& B, double min_condition) {
+  const auto decomposition = H.ldlt();
+  // rcond() does not count pivots that are exactly 0.
+  if (!(decomposition.vectorD().array() > 0.0).all() || !(decomposition.rcond() > min_condition)) {
+    return std::nullopt;
+  }
+  return decomposition.solve(B);
+}
+
 }  // namespace tartan_calib::geometry

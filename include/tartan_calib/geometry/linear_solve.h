@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "tartan_calib/geometry/rigid3.h"
 
@@ -15,5 +16,8 @@ Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& H, const Eigen::VectorXd& 
 
 /// One column per column of `B`.
 Eigen::MatrixXd solveSymmetric(const Eigen::MatrixXd& H, const Eigen::MatrixXd& B);
+
+/// The same; empty where H is not positive definite or its reciprocal condition not above `min_condition`.
+std::optional<Eigen::MatrixXd> solveDefinite(const Eigen::MatrixXd& H, const Eigen::MatrixXd& B, double min_condition);
 
 }  // namespace tartan_calib::geometry
