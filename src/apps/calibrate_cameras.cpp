@@ -25,5 +25,5 @@ int run(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
   apps::installInterruptHandler();
-  return apps::runProgram([&] { return run(std::vector<std::string>(argv + 1, argv + argc)); });
+  return apps::runProgram(argc, argv, run);
 }

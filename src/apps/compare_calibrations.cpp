@@ -33,7 +33,7 @@ camera may differ. Extrinsics are compared where both files have them, for every
 constexpr double kDefaultMaxAngle_deg = 90.0;
 constexpr double kRadiansPerDegree = 0.017453292519943295;
 
-po::variables_map parse(int argc, char** argv) {
+po::variables_map parse(const std::vector<std::string>& words) {
   po::options_description options;
   options.add_options()("help,h", "")("max-angle-deg", po::value<double>()->default_value(kDefaultMaxAngle_deg));
   options.add_options()("distance", po::value<double>());
@@ -42,7 +42,7 @@ po::variables_map parse(int argc, char** argv) {
   options.add_options()("camchain", po::value<std::vector<std::string>>());
   po::positional_options_description files;
   files.add("camchain", -1);
-  return parseCommandLine(argc, argv, options, files);
+  return parseCommandLine(words, options, files);
 }
 
 ComparisonRegion regionFrom(const po::variables_map& values) {
@@ -66,9 +66,9 @@ ComparisonRegion regionFrom(const po::variables_map& values) {
   return region;
 }
 
-int run(int argc, char** argv) {
-  const po::variables_map values = parse(argc, argv);
-  if (const std::optional<int> exit_code = answerHelp(argc, values, kHelp)) {
+int run(const std::vector<std::string>& words) {
+  const po::variables_map values = parse(words);
+  if (const std::optional<int> exit_code = answerHelp(words, values, kHelp)) {
     return *exit_code;
   }
   const auto files =
@@ -96,5 +96,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   installInterruptHandler();
-  return runProgram([&] { return run(argc, argv); });
+  return runProgram(argc, argv, run);
 }

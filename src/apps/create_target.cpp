@@ -9,11 +9,11 @@ namespace {
 
 using namespace tartan_calib::apps;
 
-int run(int argc, char** argv) {
-  const auto options = parseCreateTargetOptions({argv + 1, argv + argc});
-  if (argc == 1 || !options) {
+int run(const std::vector<std::string>& words) {
+  const auto options = parseCreateTargetOptions(words);
+  if (words.empty() || !options) {
     std::cout << createTargetHelp();
-    return argc == 1 ? kWrongUsage : kSuccess;
+    return words.empty() ? kWrongUsage : kSuccess;
   }
   installInterruptHandler();
   std::cout << createTarget(*options);
@@ -22,6 +22,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return runProgram([&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return runProgram(argc, argv, run); }

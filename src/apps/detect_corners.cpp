@@ -9,12 +9,12 @@ namespace {
 
 using namespace tartan_calib::apps;
 
-int run(int argc, char** argv) {
-  if (argc == 1) {
+int run(const std::vector<std::string>& words) {
+  if (words.empty()) {
     std::cout << detectHelp();
     return kWrongUsage;
   }
-  const std::optional<DetectOptions> options = parseDetectOptions(argc, argv);
+  const std::optional<DetectOptions> options = parseDetectOptions(words);
   if (!options) {
     std::cout << detectHelp();
     return kSuccess;
@@ -27,5 +27,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   installInterruptHandler();
-  return runProgram([&] { return run(argc, argv); });
+  return runProgram(argc, argv, run);
 }

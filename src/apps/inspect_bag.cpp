@@ -28,12 +28,12 @@ seen and where. It reads the bag's index and at most 40 images of each topic, so
   -h, --help        this text
 )";
 
-po::variables_map parse(int argc, char** argv) {
+po::variables_map parse(const std::vector<std::string>& words) {
   po::options_description options;
   options.add_options()("help,h", "")("bag", po::value<std::string>())("target", po::value<std::string>());
   po::positional_options_description bag;
   bag.add("bag", 1);
-  return parseCommandLine(argc, argv, options, bag);
+  return parseCommandLine(words, options, bag);
 }
 
 void print(const Inspection& inspection, const std::string& target_file) {
@@ -51,9 +51,9 @@ void print(const Inspection& inspection, const std::string& target_file) {
   }
 }
 
-int run(int argc, char** argv) {
-  const po::variables_map values = parse(argc, argv);
-  if (const std::optional<int> exit_code = answerHelp(argc, values, kHelp)) {
+int run(const std::vector<std::string>& words) {
+  const po::variables_map values = parse(words);
+  if (const std::optional<int> exit_code = answerHelp(words, values, kHelp)) {
     return *exit_code;
   }
   if (values.count("bag") == 0) {
@@ -78,6 +78,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return runProgram([&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return runProgram(argc, argv, run); }

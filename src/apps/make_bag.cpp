@@ -25,11 +25,11 @@ in nanoseconds; rows 'stamp_ns, wx, wy, wz, ax, ay, az' of recording/imu0.csv be
   -h, --help        this text
 )";
 
-po::variables_map parse(int argc, char** argv) {
+po::variables_map parse(const std::vector<std::string>& words) {
   po::options_description options;
   options.add_options()("help,h", "")("folder", po::value<std::string>())("output-bag", po::value<std::string>())(
       "output_bag", po::value<std::string>());
-  return parseCommandLine(argc, argv, options);
+  return parseCommandLine(words, options);
 }
 
 BagContents write(const std::string& folder, const std::string& bag_path) {
@@ -49,9 +49,9 @@ BagContents write(const std::string& folder, const std::string& bag_path) {
   return contents;
 }
 
-int run(int argc, char** argv) {
-  const po::variables_map values = parse(argc, argv);
-  if (const std::optional<int> exit_code = answerHelp(argc, values, kHelp)) {
+int run(const std::vector<std::string>& words) {
+  const po::variables_map values = parse(words);
+  if (const std::optional<int> exit_code = answerHelp(words, values, kHelp)) {
     return *exit_code;
   }
   const char* bag_option = values.count("output_bag") > 0 ? "output_bag" : "output-bag";
@@ -68,6 +68,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return runProgram([&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return runProgram(argc, argv, run); }

@@ -22,12 +22,12 @@ SimulateSummary render(const SimulateOptions& options) {
   return summary;
 }
 
-int run(int argc, char** argv) {
-  if (argc == 1) {
+int run(const std::vector<std::string>& words) {
+  if (words.empty()) {
     std::cout << simulateHelp();
     return kWrongUsage;
   }
-  const auto options = parseSimulateOptions({argv + 1, argv + argc});
+  const auto options = parseSimulateOptions(words);
   if (!options) {
     std::cout << simulateHelp();
     return kSuccess;
@@ -43,6 +43,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return runProgram([&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return runProgram(argc, argv, run); }

@@ -9,12 +9,12 @@ namespace {
 
 using namespace tartan_calib::apps;
 
-int run(int argc, char** argv) {
-  if (argc == 1) {
+int run(const std::vector<std::string>& words) {
+  if (words.empty()) {
     std::cout << validateHelp();
     return kWrongUsage;
   }
-  const std::optional<ValidateOptions> options = parseValidateOptions(argc, argv);
+  const std::optional<ValidateOptions> options = parseValidateOptions(words);
   if (!options) {
     std::cout << validateHelp();
     return kSuccess;
@@ -27,5 +27,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   installInterruptHandler();
-  return runProgram([&] { return run(argc, argv); });
+  return runProgram(argc, argv, run);
 }

@@ -15,15 +15,6 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-std::optional<DetectOptions> parse(std::vector<std::string> words) {
-  words.insert(words.begin(), "detect_corners");
-  std::vector<char*> argv;
-  for (std::string& word : words) {
-    argv.push_back(word.data());
-  }
-  return parseDetectOptions(static_cast<int>(argv.size()), argv.data());
-}
-
 observation::CameraView viewWith(std::size_t num_corners, std::int64_t stamp_ns) {
   observation::CameraView view;
   view.stamp_ns = stamp_ns;
@@ -54,23 +45,23 @@ pipeline::CameraStream blankStream() {
 
 TEST(DetectOptions, TheOutputIsBesideTheRecordingUnlessItIsNamed) {
   const std::vector<std::string> words = {"--bag", "a/rig.bag", "--target", "t.yaml", "--topics", "/a", "/b"};
-  EXPECT_EQ(parse(words)->output, "a/rig-corners.csv");
-  EXPECT_EQ(parse(words)->topics, (std::vector<std::string>{"/a", "/b"}));
+  EXPECT_EQ(parseDetectOptions(words)->output, "a/rig-corners.csv");
+  EXPECT_EQ(parseDetectOptions(words)->topics, (std::vector<std::string>{"/a", "/b"}));
   std::vector<std::string> named = words;
   named.insert(named.end(), {"--output", "x.csv", "--bag-from-to", "1", "2"});
-  EXPECT_EQ(parse(named)->output, "x.csv");
-  EXPECT_EQ(parse(named)->selection.window->to_s, 2.0);
-  EXPECT_FALSE(parse({"--help"}).has_value());
+  EXPECT_EQ(parseDetectOptions(named)->output, "x.csv");
+  EXPECT_EQ(parseDetectOptions(named)->selection.window->to_s, 2.0);
+  EXPECT_FALSE(parseDetectOptions({"--help"}).has_value());
 }
 
 TEST(DetectOptions, WhatCannotBeIsRefused) {
   const std::vector<std::string> words = {"--bag", "rig.bag", "--target", "t.yaml", "--topics", "/a"};
-  EXPECT_THROW(parse({"--bag", "rig.bag"}), UsageError);
+  EXPECT_THROW(parseDetectOptions({"--bag", "rig.bag"}), UsageError);
   for (const auto& [flag, value] : {std::make_pair("--max-pictures", "0"), std::make_pair("--threads", "-1"),
                                     std::make_pair("--min-border-distance", "-3")}) {
     std::vector<std::string> wrong = words;
     wrong.insert(wrong.end(), {std::string(flag) + "=" + value});
-    EXPECT_THROW(parse(wrong), UsageError) << flag;
+    EXPECT_THROW(parseDetectOptions(wrong), UsageError) << flag;
   }
 }
 

@@ -204,22 +204,15 @@ TEST(ResidualsBeside, ReadsWhatKalibrWritesUnderBothNames) {
   EXPECT_TRUE(residualsBeside("calibration", 2).empty());
 }
 
-std::optional<ValidateOptions> parse(std::vector<std::string> words) {
-  words.insert(words.begin(), "validate_calibration");
-  std::vector<char*> argv;
-  for (std::string& word : words) {
-    argv.push_back(word.data());
-  }
-  return parseValidateOptions(static_cast<int>(argv.size()), argv.data());
-}
-
 TEST(ValidateOptions, NeedOneSourceOfCorners) {
-  EXPECT_EQ(parse({"--bag", "b", "--camchain", "c", "--target", "t", "--approx-sync", "0.01"})->approx_sync_ns, 10'000'000);
-  EXPECT_EQ(parse({"--corners", "x.csv", "--camchain", "c", "--target", "t"})->corners_file, "x.csv");
-  EXPECT_THROW(parse({"--camchain", "c", "--target", "t"}), UsageError);
-  EXPECT_THROW(parse({"--bag", "b", "--corners", "x.csv", "--camchain", "c", "--target", "t"}), UsageError);
-  EXPECT_THROW(parse({"--bag", "b", "--camchain", "c", "--target", "t", "--expected-px", "0"}), UsageError);
-  EXPECT_FALSE(parse({"-h"}).has_value());
+  EXPECT_EQ(
+      parseValidateOptions({"--bag", "b", "--camchain", "c", "--target", "t", "--approx-sync", "0.01"})->approx_sync_ns,
+      10'000'000);
+  EXPECT_EQ(parseValidateOptions({"--corners", "x.csv", "--camchain", "c", "--target", "t"})->corners_file, "x.csv");
+  EXPECT_THROW(parseValidateOptions({"--camchain", "c", "--target", "t"}), UsageError);
+  EXPECT_THROW(parseValidateOptions({"--bag", "b", "--corners", "x.csv", "--camchain", "c", "--target", "t"}), UsageError);
+  EXPECT_THROW(parseValidateOptions({"--bag", "b", "--camchain", "c", "--target", "t", "--expected-px", "0"}), UsageError);
+  EXPECT_FALSE(parseValidateOptions({"-h"}).has_value());
 }
 
 }  // namespace

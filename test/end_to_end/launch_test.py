@@ -9,7 +9,7 @@ import unittest
 
 import yaml
 
-from programs import SOURCE, free_port, run_in_workspace
+from programs import SOURCE, Recordings, free_port, run_in_workspace
 
 LAUNCH_FILES = sorted(file.name for file in (SOURCE / "launch").glob("*.launch"))
 CALIBRATING = ["calibrate.launch", "calibrate_rig.launch"]
@@ -33,9 +33,8 @@ class LaunchFiles(unittest.TestCase):
             for name in CALIBRATING:
                 finished = run_in_workspace(f"roslaunch --args calibrate_cameras tartan_calib {name} bag:=nowhere.bag", cwd=folder)
                 self.assertEqual(finished.returncode, 0, finished.stderr)
-                words = shlex.split(finished.stdout)
-                command = " ".join(shlex.quote(word) for word in words if not word.startswith("__"))
-                finished = run_in_workspace(command)
+                self.assertIn("__name:=calibrate_cameras", finished.stdout)
+                finished = run_in_workspace(shlex.join(shlex.split(finished.stdout)))
                 self.assertEqual(finished.returncode, 1, finished.stderr)
                 self.assertTrue(finished.stderr.startswith("[ERROR]"), finished.stderr)
                 self.assertIn("nowhere.bag", finished.stderr)
@@ -55,6 +54,36 @@ class LaunchFiles(unittest.TestCase):
                 finished = run_in_workspace(command, cwd=folder, env=environment)
                 self.assertIn("[ERROR]", finished.stderr)
                 self.assertIn("nowhere.yaml", finished.stderr)
+
+
+class Launched(unittest.TestCase):
+    """What roslaunch starts calibrates, with all that roslaunch adds to the command line."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.recordings = Recordings()
+        cls.addClassCleanup(cls.recordings.remove)
+        cls.bag = cls.recordings.simulate("small", "--resolution", "320x256", "--views", 12)
+
+    def launch(self, name, *arguments):
+        camchain = self.bag.with_name("small-camchain.yaml")
+        camchain.unlink(missing_ok=True)
+        # The last word of the options takes further words, as those of roslaunch would be.
+        command = ["roslaunch", "--port", str(free_port()), "tartan_calib", name, f"bag:={self.bag.name}", *arguments]
+        environment = {**os.environ, "ROS_HOME": str(self.recordings.path / "ros")}
+        finished = run_in_workspace(shlex.join(command), cwd=self.recordings.path, env=environment)
+        self.assertIn("process has finished cleanly", finished.stdout + finished.stderr)
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        self.assertEqual(list(yaml.safe_load(camchain.read_text())), ["cam0"])
+
+    def test_calibrate(self):
+        target = self.recordings.target("small").name
+        self.launch("calibrate.launch", f"target:={target}", "options:=--no-report --max-rounds 1 --topics /cam0/image_raw")
+
+    def test_calibrate_rig(self):
+        rig = {"topics": ["/cam0/image_raw"], "models": ["ds-none"], "target": self.recordings.target("small").name}
+        (self.recordings.path / "rig.yaml").write_text(yaml.safe_dump(rig))
+        self.launch("calibrate_rig.launch", "rig:=rig.yaml", "options:=--no-report --max-rounds 1")
 
 
 class ViewerConfigurations(unittest.TestCase):

@@ -2,12 +2,14 @@
 
 #include <boost/program_options.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace tartan_calib::apps {
 
 /// The values of a command line. Throws UsageError for what `options` do not describe.
 boost::program_options::variables_map parseCommandLine(
-    int argc, char** argv, const boost::program_options::options_description& options,
+    const std::vector<std::string>& words, const boost::program_options::options_description& options,
     const boost::program_options::positional_options_description& files = {});
 
 /// Takes over a value that was given.
@@ -20,6 +22,7 @@ void takeValue(const boost::program_options::variables_map& values, const char* 
 
 /// Prints the help where it is asked for, by `--help` or an empty command line. The exit code where that is all; nothing
 /// where the program is to run.
-std::optional<int> answerHelp(int argc, const boost::program_options::variables_map& values, const char* help);
+std::optional<int> answerHelp(const std::vector<std::string>& words, const boost::program_options::variables_map& values,
+                              const char* help);
 
 }  // namespace tartan_calib::apps

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <regex>
 
 namespace tartan_calib::apps {
 namespace {
@@ -37,6 +38,18 @@ int runProgram(const std::function<int()>& body) {
     printError(std::string("unexpected failure: ") + error.what());
   }
   return kFailure;
+}
+
+int runProgram(int argc, char** argv, const std::function<int(const std::vector<std::string>& words)>& body) {
+  return runProgram([&] { return body(commandWords(argc, argv)); });
+}
+
+std::vector<std::string> commandWords(int argc, const char* const* argv) {
+  const std::regex remapping("^[A-Za-z_~/][A-Za-z0-9_/]*:=");
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const auto is_remapping = [&remapping](const std::string& word) { return std::regex_search(word, remapping); };
+  words.erase(std::remove_if(words.begin(), words.end(), is_remapping), words.end());
+  return words;
 }
 
 void printInfo(const std::string& message) { printLine(stdout, " INFO", message); }

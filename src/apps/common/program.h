@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tartan_calib/error.h"
 
@@ -24,6 +25,13 @@ class UsageError : public Error {
 /// Runs the body of a program. What it throws becomes one line on standard error that starts with `[ERROR]`, and the exit
 /// code that belongs to it.
 int runProgram(const std::function<int()>& body);
+
+/// The same for a body that takes the words after the program's name.
+int runProgram(int argc, char** argv, const std::function<int(const std::vector<std::string>& words)>& body);
+
+/// The words after the program's name, without names that ROS is to remap, such as `__name:=x`, `_parameter:=x` and
+/// `topic:=x`: roslaunch adds some to any command line.
+std::vector<std::string> commandWords(int argc, const char* const* argv);
 
 /// Lines in the manner of Kalibr's logger, `[ WARN] [<seconds since 1970>]: message`, on standard output. A message of
 /// several lines becomes one.

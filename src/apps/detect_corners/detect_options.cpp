@@ -31,7 +31,7 @@ writes rig-corners.csv beside the bag, which calibrate_cameras --corners reads, 
 Exit code: 0 with corners, 1 where no image shows the board, 2 for a wrong command line.
 )";
 
-po::variables_map parse(int argc, char** argv) {
+po::variables_map parse(const std::vector<std::string>& words) {
   const auto text = [] { return po::value<std::string>(); };
   po::options_description options = selectionOptions();
   auto add = options.add_options();
@@ -44,7 +44,7 @@ po::variables_map parse(int argc, char** argv) {
   add("output", text());
   add("pictures", text());
   add("max-pictures", po::value<int>());
-  return parseCommandLine(argc, argv, options);
+  return parseCommandLine(words, options);
 }
 
 void check(const DetectOptions& options) {
@@ -64,8 +64,8 @@ void check(const DetectOptions& options) {
 
 }  // namespace
 
-std::optional<DetectOptions> parseDetectOptions(int argc, char** argv) {
-  const po::variables_map values = parse(argc, argv);
+std::optional<DetectOptions> parseDetectOptions(const std::vector<std::string>& words) {
+  const po::variables_map values = parse(words);
   if (values.count("help") > 0) {
     return std::nullopt;
   }

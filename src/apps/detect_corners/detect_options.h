@@ -21,7 +21,7 @@ struct DetectOptions {
 };
 
 /// Nothing where help is asked for. Throws UsageError that names the flag.
-std::optional<DetectOptions> parseDetectOptions(int argc, char** argv);
+std::optional<DetectOptions> parseDetectOptions(const std::vector<std::string>& words);
 
 std::string detectHelp();
 

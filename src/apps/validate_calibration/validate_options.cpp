@@ -37,7 +37,7 @@ the worst views, and a verdict.
 Exit code: 0 where there is a verdict, whatever it is; 1 where no view can be checked; 2 for a wrong command line.
 )";
 
-po::variables_map parse(int argc, char** argv) {
+po::variables_map parse(const std::vector<std::string>& words) {
   const auto text = [] { return po::value<std::string>(); };
   po::options_description options = selectionOptions();
   auto add = options.add_options();
@@ -49,7 +49,7 @@ po::variables_map parse(int argc, char** argv) {
   add("approx-sync", po::value<double>());
   add("expected-px", po::value<double>());
   add("threads", po::value<int>());
-  return parseCommandLine(argc, argv, options);
+  return parseCommandLine(words, options);
 }
 
 std::int64_t syncFrom(const po::variables_map& values, std::int64_t fallback_ns) {
@@ -80,8 +80,8 @@ void check(const ValidateOptions& options) {
 
 }  // namespace
 
-std::optional<ValidateOptions> parseValidateOptions(int argc, char** argv) {
-  const po::variables_map values = parse(argc, argv);
+std::optional<ValidateOptions> parseValidateOptions(const std::vector<std::string>& words) {
+  const po::variables_map values = parse(words);
   if (values.count("help") > 0) {
     return std::nullopt;
   }

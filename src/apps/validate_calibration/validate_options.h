@@ -24,7 +24,7 @@ struct ValidateOptions {
 };
 
 /// Nothing where help is asked for. Throws UsageError that names the flag.
-std::optional<ValidateOptions> parseValidateOptions(int argc, char** argv);
+std::optional<ValidateOptions> parseValidateOptions(const std::vector<std::string>& words);
 
 std::string validateHelp();
 
