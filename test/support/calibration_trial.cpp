@@ -91,6 +91,9 @@ PosedCamera startAndSolve(const std::string& model_name, const Scene& scene,
     }
   }
   const calibration::Solution solution = calibration::solve(problem, calibration::SolveOptions());
+  if (solution.status != calibration::SolveStatus::kConverged) {
+    throw CalibrationError("the solver did not converge within " + std::to_string(solution.iterations) + " iterations");
+  }
   posed.camera = solution.rig.cameras[0].camera;
   std::size_t solved = 0;
   for (std::optional<geometry::Rigid3>& T_cam_target : posed.T_cam_target) {
