@@ -56,8 +56,8 @@ core_packages=(cmake g++ make libapriltag-dev libboost-program-options-dev libei
   libyaml-cpp-dev)
 ros_packages=(catkin libcairo2-dev libcv-bridge-dev libdiagnostic-msgs-dev librosbag-dev libroscpp-dev libsensor-msgs-dev
   libstd-msgs-dev libstd-srvs-dev pkg-config python3-matplotlib python3-rosbag python3-roslaunch ros-environment rosbash)
-test_packages=(libceres-dev libgtest-dev poppler-utils python3-diagnostic-msgs python3-rosservice python3-rospy python3-rostest
-  python3-sensor-msgs python3-std-srvs python3-yaml)
+test_packages=(libceres-dev libgtest-dev poppler-utils python3-diagnostic-msgs python3-numpy python3-rosparam python3-rosservice
+  python3-rospy python3-rostest python3-sensor-msgs python3-std-msgs python3-std-srvs python3-yaml)
 # shellcheck disable=SC2034
 all_packages=("${core_packages[@]}" "${ros_packages[@]}" "${test_packages[@]}")
 
