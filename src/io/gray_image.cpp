@@ -1,5 +1,7 @@
 #include "tartan_calib/io/gray_image.h"
 
+#include <algorithm>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -12,15 +14,33 @@ namespace {
 /// A span of 14 bits leaves 64 grey levels in the upper byte, about the least that sub-pixel work stands without loss.
 constexpr double kFewLevels = 16384.0;
 
+/// Share of the pixels that may lie beyond each end of the range: hot and dead ones, and the numbers that some drivers write
+/// into a row. A board that can be read covers more.
+constexpr double kStrayShare = 0.001;
+
 struct Range {
   double low = 0.0;
   double high = 0.0;
 };
 
-Range valueRange(const cv::Mat& image) {
-  Range range;
-  cv::minMaxIdx(image, &range.low, &range.high);
-  return range;
+Range valueRange(const cv::Mat& gray16) {
+  if (gray16.empty()) {
+    return {};
+  }
+  std::vector<std::size_t> counts(std::numeric_limits<std::uint16_t>::max() + 1);
+  for (int row = 0; row < gray16.rows; ++row) {
+    const auto* values = gray16.ptr<std::uint16_t>(row);
+    std::for_each(values, values + gray16.cols, [&counts](std::uint16_t value) { ++counts[value]; });
+  }
+  const auto num_stray = static_cast<std::size_t>(kStrayShare * static_cast<double>(gray16.total()));
+  const auto end = [num_stray](auto count) {
+    for (std::size_t num_beyond = *count; num_beyond <= num_stray; num_beyond += *count) {
+      ++count;
+    }
+    return count;
+  };
+  return {static_cast<double>(end(counts.begin()) - counts.begin()),
+          static_cast<double>(counts.rend() - end(counts.rbegin()) - 1)};
 }
 
 cv::Mat reduceTo8Bits(const cv::Mat& gray16) {
@@ -84,6 +104,9 @@ bool spansFewLevels(const cv::Mat& gray16) {
 }
 
 cv::Mat decodeGray(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.empty()) {
+    throw InputError("the file is empty");
+  }
   if (endsEarly(bytes)) {
     throw InputError("the file is cut off");
   }

@@ -62,8 +62,46 @@ TEST(DecodeGrayOf, aJpegWithAThumbnailSeesTheEndOfThePictureNotOfTheThumbnail) {
   expectMessage<InputError>([&] { decodeGray(bytes); }, {"cut off"});
 }
 
+/// A ramp of 12 bits that is large enough for stray pixels.
+cv::Mat ramp12() {
+  cv::Mat ramp(100, 128, CV_16UC1);
+  for (int row = 0; row < ramp.rows; ++row) {
+    for (int col = 0; col < ramp.cols; ++col) {
+      ramp.at<std::uint16_t>(row, col) = static_cast<std::uint16_t>(1000 + 20 * col);
+    }
+  }
+  return ramp;
+}
+
+TEST(ToGray8, scalesTwelveBitsByTheirRangeWhateverSinglePixelsSay) {
+  const cv::Mat ramp = ramp12();
+  const cv::Mat expected = toGray8(ramp, PixelLayout::kGray);
+  EXPECT_EQ(expected.at<std::uint8_t>(50, 0), 0);
+  EXPECT_EQ(expected.at<std::uint8_t>(50, 127), 255);
+  cv::Mat with_stray = ramp.clone();
+  constexpr int kNumStray = 12;  // of 12 800
+  for (int i = 0; i < kNumStray; ++i) {
+    with_stray.at<std::uint16_t>(0, i) = i % 2 == 0 ? 65535 : 0;
+  }
+  EXPECT_TRUE(spansFewLevels(with_stray));
+  const cv::Mat gray = toGray8(with_stray, PixelLayout::kGray);
+  EXPECT_EQ(cv::norm(gray.rowRange(1, gray.rows), expected.rowRange(1, gray.rows), cv::NORM_INF), 0.0);
+  EXPECT_EQ(gray.at<std::uint8_t>(0, 0), 255);
+  EXPECT_EQ(gray.at<std::uint8_t>(0, 1), 0);
+}
+
+TEST(ToGray8, takesTheUpperByteOfRealSixteenBits) {
+  const cv::Mat ramp = ramp12() * 10;
+  EXPECT_FALSE(spansFewLevels(ramp));
+  EXPECT_EQ(toGray8(ramp, PixelLayout::kGray).at<std::uint8_t>(0, 100), (1000 + 20 * 100) * 10 / 256);
+}
+
+TEST(ToGray8, makesAnImageOfOneValueDark) {
+  EXPECT_EQ(cv::countNonZero(toGray8(cv::Mat(40, 60, CV_16UC1, cv::Scalar(4095)), PixelLayout::kGray)), 0);
+}
+
 TEST(DecodeGrayOf, anythingElseSaysThatItIsNoImage) {
-  expectMessage<InputError>([] { decodeGray({}); }, {"not a readable image"});
+  expectMessage<InputError>([] { decodeGray({}); }, {"the file is empty"});
   expectMessage<InputError>([] { decodeGray(std::vector<std::uint8_t>(100, 'x')); }, {"not a readable image"});
 }
 

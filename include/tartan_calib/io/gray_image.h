@@ -22,7 +22,7 @@ enum class PixelLayout {
 };
 
 /// CV_8UC1 of an image; may share memory with it. 16 bits become 8 by the image's own range where spansFewLevels, else by
-/// their upper byte.
+/// their upper byte. A few stray values, such as hot pixels, are not part of the range.
 cv::Mat toGray8(const cv::Mat& pixels, PixelLayout layout);
 
 /// True where the values of a 16-bit image span so little of 16 bits that the upper byte alone would lose contrast, as those
