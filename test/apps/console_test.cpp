@@ -69,6 +69,7 @@ std::string outputOfRun() {
   listener.rig_started(problem);
   console.printResult(resultOfTwo());
   console.printFiles({"two-camchain.yaml", "two-results-cam.txt", "two-calibration.yaml", "two-poses-cam0.csv", ""});
+  console.printExports({"two-camchain.yaml", "two-results-cam.txt", "two-calibration.yaml", "two-poses-cam0.csv", ""});
   return ::testing::internal::GetCapturedStdout();
 }
 
@@ -94,6 +95,7 @@ TEST(Console, KeepsKalibrsLinesInKalibrsOrder) {
                            "initialized cam1 to:\n\t projection cam1: [",
                            "initializing calibrator\n",
                            "starting calibration...\n",
+                           "\nAll views have been processed.\n",
                            "Calibration complete.\n",
                            "[ WARN] [",
                            "]: Removed 3 outlier corners.\n",

@@ -21,7 +21,7 @@ class ReportOfARig(unittest.TestCase):
         cls.recordings = Recordings()
         cls.addClassCleanup(cls.recordings.remove)
         cls.bag = cls.recordings.simulate("rig", "--cameras", 2, "--resolution", "320x256", "--views", 16, "--yaw", 8)
-        cls.finished = calibrate(cls.bag, cls.recordings.target("rig"), MODELS, report=True)
+        cls.finished = calibrate(cls.bag, cls.recordings.target("rig"), MODELS, extra=["--export-poses"], report=True)
         cls.page = (cls.recordings.path / "rig-report-cam.html").read_text()
 
     def pdf_text(self):
@@ -33,6 +33,13 @@ class ReportOfARig(unittest.TestCase):
         self.assertEqual(self.finished.returncode, 0, self.finished.stderr)
         self.assertIn("Report written to", self.finished.stdout)
         self.assertRegex(self.finished.stdout, r"Verdict: (good|usable|repeat)")
+
+    def test_the_poses_come_after_it_as_kalibrs_do(self):
+        lines = ["All views have been processed.", "Calibration complete.", "Results written to:", "Generating result report...",
+                 "  Report written to ", "Exporting poses...", "  Poses written to "]
+        places = [self.finished.stdout.find("\n" + line) for line in lines]
+        self.assertNotIn(-1, places, self.finished.stdout)
+        self.assertEqual(places, sorted(places))
 
     def test_pdf_has_kalibrs_pages_in_order_and_then_ours(self):
         text = self.pdf_text()
@@ -54,7 +61,7 @@ class ReportOfARig(unittest.TestCase):
     def test_nothing_else_is_left(self):
         names = {path.name for path in self.recordings.path.glob("rig-*") if "truth" not in path.name}
         self.assertEqual(names, {"rig-target.yaml", "rig-camchain.yaml", "rig-results-cam.txt", "rig-calibration.yaml",
-                                 "rig-report-cam.pdf", "rig-report-cam.html"})
+                                 "rig-poses-cam0.csv", "rig-report-cam.pdf", "rig-report-cam.html"})
 
     def browser(self, script):
         """What the page's document is after `script` ran in headless Chromium."""
@@ -162,10 +169,11 @@ class ReportThatCannotBeDrawn(unittest.TestCase):
         scratch = self.recordings.path / "scratch"
         scratch.mkdir()
         words = ["calibrate_cameras", "--bag", self.bag, "--target", self.recordings.target("one"), "--topics", "/cam0/image_raw",
-                 "--models", "ds-none"]
+                 "--models", "ds-none", "--export-poses"]
         process = start(*words, env={**os.environ, "TMPDIR": str(scratch)})
         stopped = interrupt_after("Generating result report", process)
         assert_stopped(self, stopped, "stopped before the report was drawn; the results above are written and complete")
+        self.assertIn("  Poses written to", stopped.output)
         self.assertTrue((self.recordings.path / "one-camchain.yaml").exists())
         self.assertEqual(self.reports() + list(Path(scratch).iterdir()), [])
 

@@ -171,7 +171,7 @@ void Console::printResult(const pipeline::CalibrationResult& result) {
   const calibration::Solution& solution = result.solution;
   const auto num_used = std::count_if(solution.views.begin(), solution.views.end(), hasUsedCorner);
   const std::size_t num_views = solution.views.size() + static_cast<std::size_t>(result.num_dropped_views);
-  std::printf("\n%s\n\nCalibration complete.\n\n", kDots);
+  std::printf("\nAll views have been processed.\n\n%s\n\nCalibration complete.\n\n", kDots);
   printWarning("Removed " + std::to_string(numRejected(solution)) + " outlier corners.");
   std::printf("\nProcessed %zu images with %td images used\n", num_views, num_used);
   std::printf("%s\n", io::resultsText(result).c_str());
@@ -185,6 +185,10 @@ void Console::printFiles(const OutputFiles& files) {
   std::printf("  Saving camera chain calibration to file: %s\n", files.camchain.c_str());
   std::printf("  Detailed results written to file: %s\n", files.results.c_str());
   std::printf("  Complete record written to file: %s\n", files.calibration.c_str());
+  std::fflush(stdout);
+}
+
+void Console::printExports(const OutputFiles& files) {
   if (!files.poses.empty()) {
     std::printf("Exporting poses...\n  Poses written to %s\n", files.poses.c_str());
   }

@@ -20,6 +20,9 @@ class Console {
 
   void printResult(const pipeline::CalibrationResult& result);
   void printFiles(const OutputFiles& files);
+
+  /// Those of `--export-poses` and `--export-corners`, of which Kalibr tells last.
+  void printExports(const OutputFiles& files);
   /// Of the report; where `total` is not known yet, for how long the step has run.
   void showStep(const std::string& step, std::size_t done, std::size_t total);
   void printReport(const ReportFiles& report);

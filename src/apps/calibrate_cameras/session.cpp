@@ -7,6 +7,7 @@
 #include "calibrate_cameras/report.h"
 #include "common/interrupt.h"
 #include "common/program.h"
+#include "common/recording.h"
 
 namespace tartan_calib::apps {
 namespace {
@@ -57,6 +58,9 @@ void runSession(const Arguments& arguments, const std::string& command, const Se
   for (const std::string& note : arguments.notes) {
     printWarning(note);
   }
+  if (arguments.corners_file.empty()) {
+    checkIsThere(arguments.recording);
+  }
   checkInputsStay(arguments);
   checkWritable(outputPrefix(arguments));
   const Inputs inputs = openInputs(arguments, printWarning);
@@ -70,17 +74,21 @@ void runSession(const Arguments& arguments, const std::string& command, const Se
   if (arguments.verbose) {
     console.printTimes(result);
   }
+  OutputFiles files;
   {
     const UninterruptedSection files_are_written_whole;
-    console.printFiles(writeOutputs(result, arguments, inputs.options, command));
+    files = writeOutputs(result, arguments, inputs.options, command);
+    console.printFiles(files);
     setFinishedWork("the results above are written and complete");
   }
   if (hooks.finished) {
     hooks.finished(inputs, result);
   }
+  const UninterruptedSection all_files_are_named;
   if (arguments.report) {
     reportOn(result, inputs, arguments, console);
   }
+  console.printExports(files);
 }
 
 }  // namespace tartan_calib::apps

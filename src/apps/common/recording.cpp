@@ -40,6 +40,12 @@ std::vector<pipeline::CameraStream> openRecording(const std::string& path, const
                                              : ros::openBag(path, topics, selection);
 }
 
+void checkIsThere(const std::string& recording) {
+  if (!std::filesystem::exists(recording)) {
+    throw InputError("bag " + recording + " does not exist: check the path");
+  }
+}
+
 target::Target openTarget(const std::string& path, const Warn& warn) {
   const io::LoadedTarget loaded = io::loadTarget(path);
   for (const std::string& warning : loaded.warnings) {

@@ -24,6 +24,9 @@ io::RecordingOptions selectionFrom(const boost::program_options::variables_map& 
 std::vector<pipeline::CameraStream> openRecording(const std::string& path, const std::vector<std::string>& topics,
                                                   io::RecordingOptions selection, const Warn& warn);
 
+/// Throws InputError where there is no such recording, so that nothing else is blamed for it.
+void checkIsThere(const std::string& recording);
+
 /// The board of a YAML file. Throws InputError.
 target::Target openTarget(const std::string& path, const Warn& warn);
 

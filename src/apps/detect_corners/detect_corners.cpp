@@ -90,6 +90,7 @@ std::string detectionText(const pipeline::CameraCorners& corners, int camera_ind
 }
 
 void detectCorners(const DetectOptions& options) {
+  checkIsThere(options.recording);
   checkFolderOf(options.output);
   const target::Target target = openTarget(options.target_file, printWarning);
   const std::vector<pipeline::CameraStream> streams =
