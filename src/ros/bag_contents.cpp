@@ -76,10 +76,15 @@ class ImageTopics {
   void add(const std::string& topic, std::int64_t received_ns, const ReadHead& read_head) {
     ImageTopic& entry = topics_.at(topic);
     try {
-      entry.images.push_back(recordOf(read_head(entry.type == kCompressedType), received_ns));
+      const MessageHead head = read_head(entry.type == kCompressedType);
+      if (hasReadableEncoding(head)) {
+        entry.images.push_back(recordOf(head, received_ns));
+        return;
+      }
     } catch (const std::exception&) {
-      ++entry.num_unreadable;
+      // Counted with those of another type.
     }
+    ++entry.num_unreadable;
   }
 
   std::vector<ImageTopic> finish(const std::shared_ptr<SharedBag>& shared) {

@@ -41,6 +41,10 @@ TopicIndex emptyIndex(const SharedBag& shared, const std::map<std::string, std::
   if (found == types.end()) {
     throw InputError("bag " + shared.path + " has no topic " + topic + "; its image topics: " + imageTopics(types));
   }
+  if (found->second.find(kTypeSeparator) != std::string::npos) {
+    throw InputError("topic " + topic + " of bag " + shared.path + " has messages of several types (" + found->second +
+                     "): keep those of one, e.g. with 'rosbag filter'");
+  }
   if (!isImageType(found->second)) {
     throw InputError("topic " + topic + " of bag " + shared.path + " has type " + found->second + ", not " + kImageType +
                      " or " + kCompressedType + "; its image topics: " + imageTopics(types));
@@ -51,7 +55,12 @@ TopicIndex emptyIndex(const SharedBag& shared, const std::map<std::string, std::
   return index;
 }
 
-void checkEncoding(const TopicIndex& index, const std::string& encoding) {
+void checkEncoding(const TopicIndex& index, const MessageHead& head) {
+  const std::string& encoding = head.encoding;
+  if (!hasReadableEncoding(head)) {
+    throw InputError("topic " + index.topic + " has messages that are not of the type that the bag says, " +
+                     (index.is_compressed ? kCompressedType : kImageType) + ": record each type on a topic of its own");
+  }
   const bool is_supported = index.is_compressed ? isSupportedFormat(encoding) : isSupportedEncoding(encoding);
   if (!is_supported) {
     throw InputError("topic " + index.topic + " has images of encoding '" + encoding +
@@ -69,7 +78,7 @@ void addMessage(const rosbag::MessageInstance& message, TopicIndex& index) {
     index.unreadable_reason = index.num_unreadable++ == 0 ? error.what() : index.unreadable_reason;
     return;
   }
-  checkEncoding(index, head.encoding);
+  checkEncoding(index, head);
   index.num_unstamped += static_cast<std::size_t>(head.stamp.isZero());
   const ::ros::Time stamp = head.stamp.isZero() ? message.getTime() : head.stamp;
   index.stamp_message.emplace_back(static_cast<std::int64_t>(stamp.toNSec()), index.messages.size());

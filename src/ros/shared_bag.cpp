@@ -2,8 +2,12 @@
 
 #include <rosbag/view.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
+
+#include "tartan_calib/text.h"
 
 namespace tartan_calib::ros {
 namespace {
@@ -41,15 +45,23 @@ std::shared_ptr<SharedBag> openShared(const std::string& path) {
 }
 
 std::map<std::string, std::string> typesByTopic(const rosbag::Bag& bag) {
-  std::map<std::string, std::string> types;
+  std::map<std::string, std::set<std::string>> all;
   rosbag::View view(bag);
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    types[connection->topic] = connection->datatype;
+    all[connection->topic].insert(connection->datatype);
+  }
+  std::map<std::string, std::string> types;
+  for (const auto& [topic, names] : all) {
+    types[topic] = joined({names.begin(), names.end()}, kTypeSeparator);
   }
   return types;
 }
 
 bool isImageType(const std::string& type) { return type == kImageType || type == kCompressedType; }
+
+bool hasReadableEncoding(const MessageHead& head) {
+  return std::all_of(head.encoding.begin(), head.encoding.end(), [](char letter) { return letter >= ' ' && letter <= '~'; });
+}
 
 MessageHead readHead(const rosbag::MessageInstance& message, bool is_compressed) {
   return is_compressed ? message.instantiate<CompressedHead>()->head : message.instantiate<ImageHead>()->head;

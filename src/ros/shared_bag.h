@@ -15,6 +15,7 @@ namespace tartan_calib::ros {
 
 constexpr const char* kImageType = "sensor_msgs/Image";
 constexpr const char* kCompressedType = "sensor_msgs/CompressedImage";
+constexpr const char* kTypeSeparator = " and ";  ///< no type has a blank in its name
 
 /// A bag that several streams read from; rosbag itself may be used by one thread at a time.
 struct SharedBag {
@@ -29,9 +30,13 @@ InputError damagedBag(const std::string& path, const std::string& reason);
 /// Throws InputError that says what is wrong with the file, and what to do.
 std::shared_ptr<SharedBag> openShared(const std::string& path);
 
+/// Types that share a topic are joined by kTypeSeparator.
 std::map<std::string, std::string> typesByTopic(const rosbag::Bag& bag);
 
 bool isImageType(const std::string& type);
+
+/// False for the bytes of another type of message, which its place on a topic makes an image.
+bool hasReadableEncoding(const MessageHead& head);
 
 /// Throws where the message is damaged.
 MessageHead readHead(const rosbag::MessageInstance& message, bool is_compressed);

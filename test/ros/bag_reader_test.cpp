@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "ros/bag_file.h"
+#include "tartan_calib/ros/bag_contents.h"
 
 namespace tartan_calib::ros {
 namespace {
@@ -123,6 +124,41 @@ TEST(BagReader, ListsTheImageTopicsForOneThatIsNotThere) {
   }
   EXPECT_NE(errorOf([&] { openBag(bag.path(), {"/cam1"}, {}); }).find("image topics: " + kTopic), std::string::npos);
   EXPECT_NE(errorOf([&] { openBag(bag.path(), {"/imu0"}, {}); }).find("sensor_msgs/Imu"), std::string::npos);
+}
+
+/// A bag with a compressed image and then an image on one topic.
+void storeTwoTypes(const std::string& path, boost::shared_ptr<::ros::M_string> connection_of_second) {
+  sensor_msgs::CompressedImage first;
+  first.format = "png";
+  rosbag::Bag bag(path, rosbag::bagmode::Write);
+  const ::ros::Time time = ::ros::Time().fromNSec(kStart);
+  bag.write(kTopic, time, first);
+  bag.write(kTopic, time, message(grayRamp(), "mono8"), std::move(connection_of_second));
+}
+
+TEST(BagReader, RefusesATopicWithMessagesOfTwoTypes) {
+  using Image = sensor_msgs::Image;
+  const BagFile bag;
+  auto connection = boost::make_shared<::ros::M_string>();
+  (*connection)["type"] = ::ros::message_traits::datatype<Image>();
+  (*connection)["md5sum"] = ::ros::message_traits::md5sum<Image>();
+  (*connection)["message_definition"] = ::ros::message_traits::definition<Image>();
+  storeTwoTypes(bag.path(), connection);
+  const std::string error = errorOf([&] { openBag(bag.path(), {kTopic}, {}); });
+  for (const char* part : {"several types", "sensor_msgs/CompressedImage and sensor_msgs/Image", "rosbag filter"}) {
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+  }
+}
+
+TEST(BagReader, RefusesMessagesOfAnotherTypeThanTheBagSays) {
+  const BagFile bag;
+  storeTwoTypes(bag.path(), nullptr);
+  const std::string error = errorOf([&] { openBag(bag.path(), {kTopic}, {}); });
+  EXPECT_NE(error.find("not of the type that the bag says, sensor_msgs/CompressedImage"), std::string::npos) << error;
+  const BagContents contents = listBag(bag.path());
+  ASSERT_EQ(contents.image_topics.size(), 1U);
+  EXPECT_EQ(contents.image_topics.front().images.size(), 1U);
+  EXPECT_EQ(contents.image_topics.front().num_unreadable, 1U);
 }
 
 TEST(BagReader, SaysHowToRepairABagThatWasCutOff) {
