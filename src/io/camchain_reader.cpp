@@ -140,6 +140,9 @@ class CameraReader {
 
 Camchain parseCamchain(const std::string& text, const std::string& name, Extrinsics extrinsics) {
   const YAML::Node cameras = parseYamlMap(text, name);
+  if (!cameras["cam0"].IsDefined()) {
+    throw InputError(name + " is no camchain: it has no cam0");
+  }
   Camchain chain;
   for (std::size_t index = 0; index < cameras.size(); ++index) {
     const std::string camera = cameraName(index);
@@ -158,9 +161,6 @@ Camchain parseCamchain(const std::string& text, const std::string& name, Extrins
     chain.rig.cameras.push_back(rig_camera);
     chain.topics.push_back(reader.topic());
     chain.overlaps.push_back(reader.overlaps());
-  }
-  if (chain.rig.cameras.empty()) {
-    throw InputError(name + ": no cameras in it; expected cam0, cam1, ...");
   }
   return chain;
 }

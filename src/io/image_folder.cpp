@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "tartan_calib/error.h"
@@ -29,6 +30,10 @@ bool operator<(const StampedFile& a, const StampedFile& b) {
 }
 
 bool isImageFile(const fs::path& path) {
+  std::error_code is_missing;
+  if (!fs::is_regular_file(path, is_missing)) {
+    return false;
+  }
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });

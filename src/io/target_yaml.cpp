@@ -62,7 +62,9 @@ class Reader {
     return *value;
   }
 
-  [[noreturn]] void reject(const std::string& key, const std::string& expected) const { reject(key, map_[key], expected); }
+  [[noreturn]] void reject(const std::string& key, const std::string& expected) const {
+    reject(key, map_[key], expected, yamlExcerpt(map_[key]));
+  }
 
   std::vector<std::string> unknownKeys() const {
     std::vector<std::string> warnings;
@@ -99,9 +101,16 @@ class Reader {
     return *value;
   }
 
+  /// For values that are no text.
   [[noreturn]] void reject(const std::string& key, const YAML::Node& node, const std::string& expected) const {
+    const std::string found = yamlExcerpt(node);
+    reject(key, node, expected, isYamlQuoted(node) ? found + " in quotes, which make it text: leave them out" : found);
+  }
+
+  [[noreturn]] void reject(const std::string& key, const YAML::Node& node, const std::string& expected,
+                           const std::string& found) const {
     throw InputError(kReader + std::string("invalid ") + key + " (" + expected + ") in " + yamlPlace(name_, node) +
-                     ": it is " + yamlExcerpt(node));
+                     ": it is " + found);
   }
 
   std::string knownList() const {

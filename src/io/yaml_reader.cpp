@@ -107,6 +107,8 @@ std::optional<std::vector<double>> yamlNumbers(const YAML::Node& node) { return 
 
 std::optional<std::vector<int>> yamlInts(const YAML::Node& node) { return sequence<int>(node, yamlInt); }
 
+bool isYamlQuoted(const YAML::Node& node) { return node.IsDefined() && node.IsScalar() && node.Tag() == "!"; }
+
 std::string yamlPlace(const std::string& name, const YAML::Node& node) {
   if (!node.IsDefined() || node.Mark().is_null()) {
     return name;

@@ -23,6 +23,8 @@ std::optional<std::vector<int>> yamlInts(const YAML::Node& node);
 /// `file:line` of a node, `file` where it has no place.
 std::string yamlPlace(const std::string& name, const YAML::Node& node);
 
+bool isYamlQuoted(const YAML::Node& node);
+
 /// What stands there, cut to a readable length.
 std::string yamlExcerpt(const YAML::Node& node);
 

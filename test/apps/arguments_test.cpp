@@ -256,7 +256,7 @@ TEST(Help, NamesEveryFlag) {
 TEST(FocalHint, IsANumberOfPixelsAboveTen) {
   EXPECT_EQ(focalHint("420.5"), 420.5);
   EXPECT_EQ(focalHint(nullptr), std::nullopt);
-  for (const char* value : {"1", "10", "-500", "true", "", "500 px", "inf", "nan"}) {
+  for (const char* value : {"1", "10", "-500", "true", "", "500 px", "inf", "nan", "1e6", "1e9"}) {
     EXPECT_EQ(focalHint(value), std::nullopt) << value;
   }
 }

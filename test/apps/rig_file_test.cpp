@@ -74,6 +74,7 @@ TEST_F(RigFile, WhatIsWrongInItIsNamed) {
   EXPECT_NE(errorOf("models: [a\n").find("is no YAML: line 2"), std::string::npos) << errorOf("models: [a\n");
   EXPECT_NE(errorOf("ds-none\n").find("key: value"), std::string::npos);
   EXPECT_NE(errorOf("models: {cam0: ds-none}\n").find("models needs a value"), std::string::npos);
+  EXPECT_NE(errorOf("bag: x.bag\n? [models, topics]\n: ds-none\n").find("line 2: the key must be"), std::string::npos);
   EXPECT_THROW(withRigFile({"--rig", "nowhere.yaml"}), InputError);
   EXPECT_THROW(withRigFile({"--rig"}), UsageError);
   EXPECT_THROW(parseArguments({"--rig", write("modells: [ds-none]\n")}), UsageError);

@@ -33,6 +33,9 @@ class BadInput(unittest.TestCase):
     def calibrate(self, bag=None, target=None, models=("pinhole-radtan",), topics=None, extra=()):
         return calibrate(bag or self.bag, target or self.target, models, topics, extra)
 
+    def truth(self):
+        return self.folder / "rig-truth-camchain.yaml"
+
     def written(self, name, text):
         file = self.folder / name
         file.write_text(text) if isinstance(text, str) else file.write_bytes(text)
@@ -61,6 +64,18 @@ class WrongCommandLine(BadInput):
         topics = ["/cam0/image_raw", "/cam1/image_raw"]
         self.assert_refused(self.calibrate(topics=topics), 2, "one camera model per topic")
 
+    def test_a_topic_for_two_cameras(self):
+        topics = ["/cam0/image_raw"] * 2
+        self.assert_refused(self.calibrate(topics=topics, models=["ds-none"] * 2), 2, "topic /cam0/image_raw is there twice")
+        chain = self.written("twice.yaml", self.truth().read_text().replace("/cam1/", "/cam0/"))
+        finished = run("calibrate_cameras", "--bag", self.bag, "--target", self.target, "--init", chain)
+        self.assert_refused(finished, 2, "topic /cam0/image_raw is there twice")
+
+    def test_the_models_of_a_camchain_are_called_that(self):
+        finished = run("calibrate_cameras", "--bag", self.bag, "--target", self.target, "--init", self.truth(), "--topics",
+                       "/cam0/image_raw")
+        self.assert_refused(finished, 2, "2 models (those of --init) and 1 topics")
+
     def test_far_too_many_threads_are_fewer(self):
         finished = self.calibrate(extra=["--threads", "1000000", "--max-rounds", "0"])
         self.assertEqual((finished.returncode, finished.stderr), (0, ""))
@@ -74,6 +89,28 @@ class WrongCommandLine(BadInput):
 class WrongRecording(BadInput):
     def test_a_bag_that_is_not_there(self):
         self.assert_refused(self.calibrate(bag=self.folder / "nowhere.bag"), 1, "nowhere.bag")
+
+    def test_a_bag_in_a_folder_that_is_not_there(self):
+        bag = self.folder / "nowhere" / "x.bag"
+        for program, more in (("calibrate_cameras", ("--models", "ds-none")), ("detect_corners", ())):
+            finished = run(program, "--bag", bag, "--target", self.target, "--topics", "/cam0/image_raw", *more)
+            self.assert_refused(finished, 1, f"bag {bag} does not exist")
+
+    def test_a_file_that_is_no_camchain_to_start_from(self):
+        finished = self.calibrate(extra=["--init", self.target])
+        self.assert_refused(finished, 1, self.target.name, "is no camchain")
+
+    def test_cameras_in_another_order_than_those_to_start_from(self):
+        topics = ["/cam1/image_raw", "/cam0/image_raw"]
+        extra = ["--init", self.truth(), "--max-rounds", "0", "--fix", "extrinsics"]
+        finished = self.calibrate(models=["ds-none"] * 2, topics=topics, extra=extra)
+        for file in self.folder.glob("rig-*"):
+            if "truth" not in file.name and file != self.target:
+                file.unlink()
+        warnings = [line for line in finished.stdout.splitlines() if "calibration to start from" in line]
+        self.assertEqual(len(warnings), 2, finished.stdout)
+        self.assertIn("cam0 is /cam1/image_raw, but /cam0/image_raw", warnings[0])
+        self.assertIn("cam1 is /cam0/image_raw, but /cam1/image_raw", warnings[1])
 
     def test_a_bag_that_is_none(self):
         self.assert_refused(self.calibrate(bag=self.written("text.bag", "no bag\n" * 100)), 1, "text.bag")
@@ -125,7 +162,7 @@ class WrongRecording(BadInput):
         self.assert_refused(self.calibrate(target=board), 1, "/cam0/image_raw")
 
     def test_another_model_or_size_than_that_to_start_from(self):
-        chain = self.folder / "rig-truth-camchain.yaml"
+        chain = self.truth()
         start = self.written("start.yaml", chain.read_text().replace("[480, 400]", "[400, 480]"))
         for model, words in (("omni-none", ("is to be omni-none", "leave --models out")), ("ds-none", ("480x400", "for 400x480"))):
             finished = self.calibrate(models=[model] * 2, extra=["--init", start])
@@ -197,9 +234,15 @@ class CannotFinish(BadInput):
         assert_stopped(self, stopped, "in round 0 (detect cam0); nothing was written")
         self.assertEqual([file for file in self.folder.glob("rig-*") if "truth" not in file.name], [self.target])
 
+    def test_a_limit_of_the_size_of_files(self):
+        words = [PROGRAMS / "calibrate_cameras", "--bag", self.bag, "--target", self.target, "--topics", "/cam0/image_raw",
+                 "--models", "pinhole-radtan", "--max-rounds", "0", "--no-report"]
+        finished = run_command("bash", "-c", 'ulimit -f 1 && exec "$@"', "bash", *words)
+        self.assert_refused(finished, 1, "cannot write", "File too large")
+
     def test_a_result_that_would_replace_its_own_input(self):
         chain = self.folder / "rig-camchain.yaml"
-        shutil.copy(self.folder / "rig-truth-camchain.yaml", chain)
+        shutil.copy(self.truth(), chain)
         before = chain.read_bytes()
         finished = self.calibrate(models=["ds-none"] * 2, extra=["--init", chain])
         kept = chain.read_bytes()
@@ -213,13 +256,13 @@ class CannotFinish(BadInput):
 
     def test_what_tartan_calibrate_writes_first_does_not_replace_its_input(self):
         chain = self.folder / "x0-camchain.yaml"
-        shutil.copy(self.folder / "rig-truth-camchain.yaml", chain)
+        shutil.copy(self.truth(), chain)
         finished = run("tartan_calibrate", "--bag", self.bag, "--target", self.target, "--init", chain, "--save_dir", self.folder,
                        "--log_dest", "x", "--no-report")
         kept = chain.read_bytes()
         chain.unlink()
         self.assert_refused(finished, 1, "written over", str(chain), "--init")
-        self.assertEqual(kept, (self.folder / "rig-truth-camchain.yaml").read_bytes())
+        self.assertEqual(kept, (self.truth()).read_bytes())
 
     def test_a_result_folder_that_does_not_exist(self):
         corners = self.folder / "nowhere" / "x-corners.csv"

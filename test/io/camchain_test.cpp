@@ -272,5 +272,11 @@ TEST(CamchainReader, AnEmptyOrBrokenFileIsAnError) {
   }
 }
 
+TEST(CamchainReader, AnotherKindOfFileIsNoCamchain) {
+  for (const std::string text : {"{}", "target_type: 'aprilgrid'\ntagCols: 6\n"}) {
+    expectMessage<InputError>([&] { parseCamchain(text, "board.yaml"); }, {"board.yaml is no camchain"});
+  }
+}
+
 }  // namespace
 }  // namespace tartan_calib::io

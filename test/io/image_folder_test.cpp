@@ -104,6 +104,14 @@ TEST_F(ImageFolder, LeavesOutFilesThatAreNotNamedByAStampAndSaysSo) {
   EXPECT_NE(notices.front().find("2 images"), std::string::npos) << notices.front();
 }
 
+TEST_F(ImageFolder, LeavesOutFoldersThatAreNamedLikeImages) {
+  write("cam0/1.png");
+  fs::create_directories(folder / "cam0/2.png");
+  fs::create_directories(folder / "cam1/3.png");
+  EXPECT_EQ(stamps("/cam0/image_raw"), std::vector<std::int64_t>{1});
+  EXPECT_EQ(imageFolderTopics(folder.string()).size(), 1U);
+}
+
 TEST_F(ImageFolder, NamesWhatIsMissing) {
   EXPECT_NE(errorOf("/cam0/image_raw").find("no subfolder"), std::string::npos);
   write("cam0/left_2.png");

@@ -135,6 +135,11 @@ TEST(TargetYaml, ValuesOfAnotherTypeOrOutOfRangeAreNamed) {
   expect_rejected(kAprilGrid, "tagBorder", "3", "tagBorder (cells");
 }
 
+TEST(TargetYaml, AValueInQuotesIsCalledThat) {
+  expectMessage<InputError>([] { parse(with(kAprilGrid, "tagSize", "'0.088'")); }, {"tagSize (float>0)", "in quotes"});
+  expectMessage<InputError>([] { parse(with(kAprilGrid, "tagRows", "\"6\"")); }, {"tagRows (int>=3)", "in quotes"});
+}
+
 TEST(TargetYaml, ABoardWithMoreTagsThanTheFamilyIsRejected) {
   expectMessage<InputError>([] { parse(with(with(kAprilGrid, "tagRows", "100"), "tagCols", "100")); },
                             {"tagRows", "10000 tags", "587 codes"});

@@ -71,8 +71,9 @@ Output
 Accepted for Kalibr's sake, without effect: a batch solver uses every view, in any order, and opens no windows
   --qr-tol X  --mi-tol X  --no-shuffle  --plot  --plot-outliers  --show-extraction
 
-Flags may be cut short while they stay unambiguous. Environment: KALIBR_MANUAL_FOCAL_LENGTH_INIT, a focal length in pixels
-above 10, helps the start where nothing else does. Exit code: 0 with a result, 1 without, 2 for a wrong command line.
+Flags may be cut short while they stay unambiguous. Environment: KALIBR_MANUAL_FOCAL_LENGTH_INIT, a focal length of 10 to
+1000000 pixels, helps the start where nothing else does. Exit code: 0 with a result, 1 without, 2 for a wrong command line,
+130 after Ctrl-C.
 )";
 
 }  // namespace

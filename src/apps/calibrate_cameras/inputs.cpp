@@ -13,8 +13,7 @@ namespace tartan_calib::apps {
 namespace {
 
 /// Takes over what the arguments leave to the camchain.
-void applyInit(const std::string& path, Inputs& inputs) {
-  const io::Camchain chain = io::loadCamchain(path);
+void applyInit(const io::Camchain& chain, Inputs& inputs) {
   inputs.options.known_rig = chain.rig;
   if (inputs.options.models.empty()) {
     for (const calibration::RigCamera& camera : chain.rig.cameras) {
@@ -36,6 +35,33 @@ std::vector<std::string> topicsOf(const std::vector<WithTopic>& cameras) {
     topics.push_back(camera.topic);
   }
   return topics;
+}
+
+void checkDistinct(const std::vector<std::string>& topics) {
+  for (auto topic = topics.begin(); topic != topics.end(); ++topic) {
+    if (std::find(topics.begin(), topic, *topic) != topic) {
+      throw UsageError("topic " + *topic + " is there twice: every camera has a topic of its own");
+    }
+  }
+}
+
+/// Two cameras of one model and size in the wrong order would otherwise start as each other.
+void noteOtherTopics(const Inputs& inputs, const io::Camchain& chain, const Warn& warn) {
+  for (std::size_t i = 0; i < std::min(chain.topics.size(), inputs.topics.size()); ++i) {
+    if (!chain.topics[i].empty() && chain.topics[i] != inputs.topics[i]) {
+      warn(cameraName(i) + " is " + inputs.topics[i] + ", but " + chain.topics[i] +
+           " in the calibration to start from: is the order of --topics that of --init?");
+    }
+  }
+}
+
+void checkCounts(const Arguments& arguments, const Inputs& inputs) {
+  const std::size_t num_models = inputs.options.models.size();
+  if (num_models != inputs.topics.size()) {
+    const std::string source = arguments.calibrate.models.empty() ? " (those of --init)" : "";
+    throw UsageError("exactly one camera model per topic is needed: there are " + std::to_string(num_models) + " models" +
+                     source + " and " + std::to_string(inputs.topics.size()) + " topics");
+  }
 }
 
 InputError noSuchTopic(const std::string& path, const std::string& topic, const std::vector<pipeline::CameraCorners>& all) {
@@ -60,7 +86,7 @@ void applyFocalHint(const char* value, Inputs& inputs, const Warn& warn) {
   inputs.options.focal_hint_px = focalHint(value);
   if (value != nullptr && !inputs.options.focal_hint_px) {
     warn("KALIBR_MANUAL_FOCAL_LENGTH_INIT is ignored: '" + std::string(value) +
-         "' is no focal length in pixels above 10, and none is needed");
+         "' is no focal length of more than 10 and less than 1000000 pixels, and none is needed");
   }
 }
 
@@ -75,9 +101,12 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
   }
   inputs.target = openTarget(arguments.target_file, warn);
   applyFocalHint(std::getenv("KALIBR_MANUAL_FOCAL_LENGTH_INIT"), inputs, warn);
+  io::Camchain start;
   if (!arguments.init_file.empty()) {
-    applyInit(arguments.init_file, inputs);
+    start = io::loadCamchain(arguments.init_file);
+    applyInit(start, inputs);
   }
+  checkDistinct(inputs.topics);
   if (!arguments.corners_file.empty() && !arguments.recording.empty()) {
     warn("the images of " + arguments.recording +
          " are not read, as --corners takes their place; the results are named after the recording");
@@ -92,15 +121,13 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
     }
     inputs.dataset = arguments.recording;
   }
-  if (inputs.options.models.size() != inputs.topics.size()) {
-    throw UsageError("exactly one camera model per topic is needed: there are " +
-                     std::to_string(inputs.options.models.size()) + " models and " + std::to_string(inputs.topics.size()) +
-                     " topics");
-  }
+  checkCounts(arguments, inputs);
   if (inputs.corners.empty()) {
     inputs.streams = openRecording(arguments.recording, inputs.topics, arguments.selection, warn);
     inputs.topics = topicsOf(inputs.streams);
   }
+  checkDistinct(inputs.topics);  // a folder's topic has several names
+  noteOtherTopics(inputs, start, warn);
   return inputs;
 }
 

@@ -46,7 +46,11 @@ Words valuesOf(const YAML::Node& node, const std::string& flag, const std::strin
 Words flagsOf(const std::string& file) {
   Words words;
   for (const auto& entry : readMap(file)) {
-    const std::string flag = entry.first.as<std::string>();
+    if (!entry.first.IsScalar()) {
+      throw InputError("rig file " + file + ": line " + std::to_string(entry.first.Mark().line + 1) +
+                       ": the key must be the name of a flag, such as models");
+    }
+    const std::string flag = entry.first.Scalar();
     Words values = valuesOf(entry.second, flag, file);
     if (values == Words{"false"}) {
       continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cinttypes>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -25,6 +26,7 @@ void printLine(std::FILE* file, const char* level, std::string message) {
 }  // namespace
 
 int runProgram(const std::function<int()>& body) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file above the limit of `ulimit -f` then fails as one on a full disk does
   try {
     return body();
   } catch (const UsageError& error) {
