@@ -13,7 +13,7 @@ namespace tartan_calib {
 /// nothing and cost memory, so there is a limit.
 inline int numThreads(int wanted) {
   constexpr int kMaxThreadsPerCore = 4;
-  const int num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  static const int num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // asks the system
   return wanted > 0 ? std::min(wanted, kMaxThreadsPerCore * num_cores) : num_cores;
 }
 

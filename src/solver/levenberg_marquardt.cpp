@@ -21,6 +21,7 @@ constexpr double kMaxDamping = 1e12;
 constexpr double kDampingDecrease = 0.3;
 constexpr double kDampingIncrease = 3.0;  ///< grows with every rejection in a row
 constexpr int kMaxCorrections = 2;
+constexpr int kPatience = 10;      ///< iterations that together must gain something
 constexpr double kMaxRise = 10.0;  ///< a step that raises the cost by more is beyond correction
 constexpr double kGoodGain = 0.5;  ///< actual over promised change of cost from which on damping falls
 
@@ -38,6 +39,7 @@ class Minimizer {
     linearize();
     use_sparse_ = useSparse();
     summary_.initial_cost = equations_.cost;
+    last_look_ = {0, equations_.cost};
     while (!is_finished_) {
       iterate();
     }
@@ -79,9 +81,18 @@ class Minimizer {
   }
 
   /// No step lowers the cost.
-  void giveUp() {
-    const bool is_negligible = failed_promise_ <= std::max(tolerance(), options_.negligible_ratio * equations_.cost);
-    finish(is_negligible ? Status::kConverged : Status::kStalled);
+  void giveUp() { finish(failed_promise_ <= negligible() ? Status::kConverged : Status::kStalled); }
+
+  double negligible() const { return std::max(tolerance(), options_.negligible_ratio * equations_.cost); }
+
+  /// Whether the last iterations together have gained nothing that counts.
+  bool isCrawling() {
+    if (summary_.iterations - last_look_.iteration < kPatience) {
+      return false;
+    }
+    const double gained = last_look_.cost - equations_.cost;
+    last_look_ = {summary_.iterations, equations_.cost};
+    return gained <= negligible();
   }
 
   bool tryStep(const Candidate& candidate) {
@@ -125,6 +136,8 @@ class Minimizer {
     ++summary_.iterations;
     if (options_.progress && !options_.progress(summary_.iterations, equations_.cost)) {
       finish(Status::kCancelled);
+    } else if (isCrawling()) {
+      finish(Status::kConverged);
     } else if (summary_.iterations >= options_.max_iterations) {
       finish(Status::kMaxIterations);
     }
@@ -186,6 +199,10 @@ class Minimizer {
   double increase_ = kDampingIncrease;
   bool use_sparse_ = false;
   bool undamped_failed_ = false;
+  struct Look {
+    int iteration = 0;
+    double cost = 0.0;
+  } last_look_;
   double failed_promise_ = 0.0;  ///< largest one of the steps rejected since the last success
   bool is_finished_ = false;
 };
