@@ -248,6 +248,13 @@ class BatchSolve {
 
 }  // namespace
 
+double doneShare(const SolveProgress& progress) {
+  // How many iterations a stage takes shows only at its end: the usual number counts half, as many again a sixth, ...
+  constexpr double kUsualIterations = 4.0;
+  const double stage_share = progress.iteration / (progress.iteration + kUsualIterations);
+  return (progress.stage + stage_share) / progress.num_stages;
+}
+
 Solution solve(const Problem& problem, const SolveOptions& options) { return BatchSolve(problem, options).run(); }
 
 std::optional<Eigen::Vector2d> residual(const Rig& rig, const geometry::Rigid3& T_rig_target,

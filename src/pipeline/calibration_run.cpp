@@ -1,6 +1,7 @@
 #include "calibration_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -171,9 +172,10 @@ calibration::Problem CalibrationRun::startRig() {
 calibration::SolveOptions CalibrationRun::solveOptions() const {
   calibration::SolveOptions options = options_.solve;
   options.num_threads = options_.num_threads;
-  options.progress = [this, progress = Progress{stage_.stage, -1, 0, 0}](const calibration::SolveProgress&) mutable {
-    ++progress.done;
-    report(listener_, progress);
+  options.progress = [this, stage = stage_.stage](const calibration::SolveProgress& progress) {
+    constexpr std::size_t kTotal = 100;
+    const double percent = std::ceil(kTotal * calibration::doneShare(progress));
+    report(listener_, {stage, -1, std::min(static_cast<std::size_t>(percent), kTotal - 1), kTotal});
     return !isCancelled(listener_);
   };
   return options;

@@ -243,10 +243,10 @@ void addRadialBiases(const camera::CameraModel& model, CameraAnalysis& camera) {
 }  // namespace
 
 Analysis analyse(const pipeline::CalibrationResult& result, const pipeline::CalibrateOptions& options,
-                 std::vector<SeenCorners> corners, const std::vector<CameraPictures>& pictures) {
+                 std::vector<SeenCorners> corners, const std::vector<CameraPictures>& pictures, const Listener& listener) {
   Analysis analysis;
   analysis.timings = cameraTimings(result, corners);
-  const auto halves = solveHalves(result, options);
+  const auto halves = solveHalves(result, options, listener);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const camera::Camera& camera = result.solution.rig.cameras[i].camera;
     const double max_polar_rad = result.cameras[i].statistics.max_polar_angle_rad;

@@ -1,6 +1,9 @@
 #include "tartan_calib/report/cross_validation.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "listen.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -47,7 +50,8 @@ bool hasViewsEnough(const calibration::Problem& half) {
 }  // namespace
 
 std::optional<std::array<calibration::Solution, 2>> solveHalves(const pipeline::CalibrationResult& result,
-                                                                const pipeline::CalibrateOptions& options) {
+                                                                const pipeline::CalibrateOptions& options,
+                                                                const Listener& listener) {
   calibration::SolveOptions solve = options.solve;
   if (solve.fix_intrinsics) {
     return std::nullopt;
@@ -62,6 +66,14 @@ std::optional<std::array<calibration::Solution, 2>> solveHalves(const pipeline::
     if (!hasViewsEnough(half)) {
       return std::nullopt;
     }
+    solve.progress = [&listener, remainder](const calibration::SolveProgress& progress) {
+      constexpr std::size_t kTotal = 100;
+      if (listener.progress) {
+        const double percent = std::ceil(0.5 * kTotal * (static_cast<double>(remainder) + calibration::doneShare(progress)));
+        listener.progress(std::min(static_cast<std::size_t>(percent), kTotal), kTotal);
+      }
+      return !isCancelled(listener);
+    };
     halves[remainder] = calibration::solve(half, solve);
     if (halves[remainder].status == calibration::SolveStatus::kCancelled) {
       throw pipeline::Cancelled("the report was stopped");

@@ -107,6 +107,13 @@ TEST(Solve, ReportsProgressAndStopsWhenAskedTo) {
   ASSERT_EQ(static_cast<int>(reports.size()), solution.iterations);
   EXPECT_EQ(reports.front().stage, 0);
   EXPECT_LT(reports.back().stage, reports.back().num_stages);
+  double done_share = 0.0;
+  for (const SolveProgress& report : reports) {
+    EXPECT_GT(doneShare(report), done_share);
+    done_share = doneShare(report);
+  }
+  EXPECT_GT(done_share, static_cast<double>(reports.back().stage) / reports.back().num_stages);
+  EXPECT_LT(done_share, 1.0);
   EXPECT_NEAR(reports.back().rms_px, std::sqrt(2.0) * kNoise_px, 0.1 * kNoise_px);
 
   int num_calls = 0;

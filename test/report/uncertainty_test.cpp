@@ -115,9 +115,21 @@ TEST(CrossValidationTest, IsLeftOutWhereTheIntrinsicsAreFixedOrViewsAreFew) {
 }
 
 TEST(CrossValidationTest, StopsWhenCancelled) {
-  pipeline::CalibrateOptions stopping;
-  stopping.solve.progress = [](const calibration::SolveProgress& /*iteration*/) { return false; };
-  EXPECT_THROW(solveHalves(solved(noisyScene(1)), stopping), pipeline::Cancelled);
+  EXPECT_THROW(solveHalves(solved(noisyScene(1)), {}, {{}, [] { return true; }}), pipeline::Cancelled);
+}
+
+TEST(CrossValidationTest, TellsHowMuchOfBothHalvesIsDone) {
+  std::vector<std::size_t> percents;
+  const auto tell = [&percents](std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, 100U);
+    percents.push_back(done);
+  };
+  ASSERT_TRUE(solveHalves(solved(noisyScene(1)), {}, {tell, {}}));
+  EXPECT_TRUE(std::is_sorted(percents.begin(), percents.end()));
+  EXPECT_GT(percents.front(), 0U);
+  EXPECT_LT(percents.front(), 50U);
+  EXPECT_GT(percents.back(), 50U);
+  EXPECT_LE(percents.back(), 100U);
 }
 
 }  // namespace

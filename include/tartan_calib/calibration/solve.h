@@ -36,6 +36,10 @@ struct SolveProgress {
   double rms_px = 0.0;  ///< sqrt(mean |e|^2) of the corners that take part, each at most as bad as the stage's loss says
 };
 
+/// How much of the solve is done, for a bar: grows with every iteration, above 0 and below 1. Stages count alike although
+/// they are not; a solve whose choice of corners stays the same early ends before its last stage.
+double doneShare(const SolveProgress& progress);
+
 struct SolveOptions {
   LinearSolver linear_solver = LinearSolver::kAuto;
   int num_threads = 0;  ///< 0: all cores. The result has the same bits for every value

@@ -68,7 +68,7 @@ std::string stageName(Stage stage);
 struct Progress {
   Stage stage = Stage::kDetect;
   int camera_index = -1;  ///< -1 where the stage is about all cameras
-  std::size_t done = 0;   ///< images; iterations of a solve, whose total is unknown (0); otherwise 0, then 1
+  std::size_t done = 0;   ///< images; percent of a solve, as far as it can be known; otherwise 0, then 1
   std::size_t total = 0;
 };
 

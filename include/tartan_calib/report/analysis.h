@@ -6,6 +6,7 @@
 
 #include "tartan_calib/pipeline/calibrate.h"
 #include "tartan_calib/report/camera_timing.h"
+#include "tartan_calib/report/listener.h"
 #include "tartan_calib/report/pictures.h"
 #include "tartan_calib/report/seen_corners.h"
 
@@ -57,8 +58,9 @@ struct Analysis {
 };
 
 /// Everything about a result that needs its camera models. `pictures` may be empty. `corners`: seenCorners(result). Throws
-/// pipeline::Cancelled where options.solve.progress ends a solve.
+/// pipeline::Cancelled where the listener cancels.
 Analysis analyse(const pipeline::CalibrationResult& result, const pipeline::CalibrateOptions& options,
-                 std::vector<SeenCorners> corners, const std::vector<CameraPictures>& pictures);
+                 std::vector<SeenCorners> corners, const std::vector<CameraPictures>& pictures,
+                 const Listener& listener = {});
 
 }  // namespace tartan_calib::report

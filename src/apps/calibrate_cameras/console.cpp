@@ -97,7 +97,7 @@ void Console::onProgress(const pipeline::Progress& progress) {
       bar_.clear();
       step_.clear();
     } else {
-      showStep(pipeline::stageName(progress.stage), 0, 0);
+      showStep(pipeline::stageName(progress.stage), progress.done, progress.total);
     }
     return;
   }

@@ -58,17 +58,6 @@ report::Listener stepListener(const std::string& step, const ReportListener& lis
   return of_step;
 }
 
-pipeline::CalibrateOptions analysisOptions(const Inputs& inputs, const ReportListener& listener) {
-  pipeline::CalibrateOptions options = inputs.options;
-  options.solve.progress = [of_step = stepListener("Analysis", listener)](const calibration::SolveProgress& /*iteration*/) {
-    if (of_step.progress) {
-      of_step.progress(0, 0);
-    }
-    return !of_step.is_cancelled();
-  };
-  return options;
-}
-
 }  // namespace
 
 ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs& inputs, const std::string& prefix,
@@ -81,7 +70,8 @@ ReportFiles writeReport(const pipeline::CalibrationResult& result, const Inputs&
     options.listener = stepListener("Pictures of the views", listener);
     const auto corners = report::seenCorners(result);
     const auto pictures = report::takePictures(inputs.streams, result, corners, folder.path(), options);
-    const report::Analysis analysis = report::analyse(result, analysisOptions(inputs, listener), corners, pictures);
+    const report::Analysis analysis =
+        report::analyse(result, inputs.options, corners, pictures, stepListener("Analysis", listener));
     files.verdict = report::judge(result, analysis);
     report::writeReportData(folder.path(), {inputs.dataset, result, analysis, *files.verdict, pictures});
     const std::string pdf = prefix + "-report-cam.pdf";
