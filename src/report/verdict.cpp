@@ -52,7 +52,10 @@ std::string richerModels(const std::string& model) {
   if (model == "omni-radtan") {
     return "try pinhole-equi, and look for blur at the edge";
   }
-  return "try pinhole-equi or omni-radtan";
+  if (model == "ds-none") {
+    return "try pinhole-equi or omni-radtan";
+  }
+  return "try ds-none, pinhole-equi or omni-radtan";
 }
 
 /// Collects the reasons that one camera gives.

@@ -144,7 +144,7 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
     def test_lens_that_the_model_cannot_follow(self):
         verdict = self.verdict(self.rig, ["eucm-none", "ds-none"])
         size, start, end = self.reason(verdict, r"usable: cam0: residuals follow the angle \(([\d.]+) px outwards .* at (\d+) to (\d+) "
-                                                r"degrees\): eucm-none is too simple for this lens, try pinhole-equi or omni-radtan")
+                                                r"degrees\): eucm-none is too simple for this lens, try ds-none, pinhole-equi or omni-radtan")
         self.assertGreater(size, 0.03)
         self.assertEqual((start, end), (90.0, 100.0))
         self.assertFalse([text for text in verdict[1] if "cam1" in text], verdict)

@@ -106,9 +106,12 @@ TEST(VerdictTest, ALensThatTheModelCannotFollowAsksForARicherOne) {
   corners.images = test_support::viewsOf(scene.views, 0);
   corners.num_images = scene.views.size();
   pipeline::CalibrateOptions calibrate;
-  calibrate.models = {"pinhole-fov"};
-  const Verdict verdict = judged(pipeline::calibrateCorners({corners}, target::AprilGrid(), calibrate));
-  reasonWith(verdict, "pinhole-fov is too simple for this lens, try pinhole-equi");
+  for (const auto& [model, richer] : {std::pair("pinhole-fov", "pinhole-equi or ds-none"),
+                                      std::pair("eucm-none", "ds-none, pinhole-equi or omni-radtan")}) {
+    calibrate.models = {model};
+    const Verdict verdict = judged(pipeline::calibrateCorners({corners}, target::AprilGrid(), calibrate));
+    reasonWith(verdict, std::string(model) + " is too simple for this lens, try " + richer);
+  }
 }
 
 TEST(VerdictTest, HalvesThatDisagreePointToACameraThatChanged) {
