@@ -33,6 +33,11 @@ def save(figure, name):
     print(f"* `{path.name}`")
 
 
+def plain(title):
+    """A title of the tables without their marks for code."""
+    return title.replace("`", "")
+
+
 def plot_rates(settings):
     """Share of the corners to be seen that each detector finds, by polar angle."""
     figure, axes = plt.subplots(1, len(RECORDINGS), figsize=(11, 4.8), sharey=True)
@@ -42,7 +47,7 @@ def plot_rates(settings):
         inside = [truth.asked_within(band) for band in columns]
         for (title, score), colour, marker in zip(scores(recording, truth, settings.peers), COLOURS, MARKERS):
             rates = [100.0 * np.sum(score.found & band) / np.sum(band) for band in inside]
-            axis.plot([np.mean(band) for band in columns], rates, color=colour, marker=marker, label=title)
+            axis.plot([np.mean(band) for band in columns], rates, color=colour, marker=marker, label=plain(title))
         axis.set(title=f"{recording.name}: {recording.title}", xlabel="polar angle [degrees], bands of 10", ylim=(-3, 103))
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("found of the corners to be seen [%]")
@@ -65,7 +70,7 @@ def plot_scatter(recording):
         missed = truth.asked & ~found
         for mask, colour, label in [(missed, "#D55E00", "missed"), (found, "#0072B2", "found")]:
             axis.scatter(np.radians(truth.azimuth_deg[mask]), truth.polar_deg[mask], s=2, color=colour, linewidths=0, label=label)
-        axis.set_title(f"{detector.title}\n{np.sum(found)} of {np.sum(truth.asked)}", fontsize=10)
+        axis.set_title(f"{plain(detector.title)}\n{np.sum(found)} of {np.sum(truth.asked)}", fontsize=10)
         axis.set_theta_direction(-1)  # as in the image, where y points down
         axis.set_rlabel_position(45)
         axis.set_ylim(0, recording.edge_deg)

@@ -248,13 +248,21 @@ def draw_map(axes, camera, column, title, norm):
     shown = shown_values(camera, column)
     half_u, half_v = 0.5 * (u[0, 1] - u[0, 0]), 0.5 * (v[1, 0] - v[0, 0])
     image = cells(axes, shown, (u[0, 0] - half_u, u[0, -1] + half_u, v[-1, 0] + half_v, v[0, 0] - half_v), norm=norm, cmap=AMOUNTS)
-    for levels, colour, width in ((MAP_LEVELS_PX, "white", 0.7), ((FAIR_PX,), RED, 2.0)):
-        crossed = [level for level in levels if is_crossed(shown, level)]
-        if crossed:
-            axes.clabel(axes.contour(u, v, shown, crossed, colors=colour, linewidths=width), fmt="%g px", fontsize=7)
+    crossed = [level for level in MAP_LEVELS_PX if is_crossed(shown, level)]
+    if crossed:
+        axes.clabel(axes.contour(u, v, shown, crossed, colors="white", linewidths=0.7), fmt="%g px", fontsize=7)
+    mark_fair(axes, u, v, shown)
     draw_ring(axes, camera)
     axes.grid(False)
     return image
+
+
+def mark_fair(axes, u, v, shown):
+    """The line at 0.1 px, with its number on top of the longest piece: matplotlib leaves short ones without."""
+    if is_crossed(shown, FAIR_PX):
+        longest = max(axes.contour(u, v, shown, [FAIR_PX], colors=RED, linewidths=2.0).allsegs[0], key=len)
+        axes.text(*longest[np.argmin(longest[:, 1])], f"{FAIR_PX:g} px", color=RED, fontsize=7, ha="center", va="center",
+                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})
 
 
 def maps_page(report, camera):

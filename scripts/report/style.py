@@ -14,6 +14,7 @@ PAGE_INCHES = (11.7, 8.3)
 TITLE_INCHES = 0.95  # from the upper edge to the axes
 LABELS_INCHES = 0.75  # from the lower edge to the axes, a note comes on top
 LINE_INCHES = 0.15
+BAR_GAP_INCHES = 0.55  # between axes and their colour bar: for the numbers and the label below the axes
 DOTS_ACROSS = 240  # dots of about one and a half points
 HEAD_RATIO = 0.3  # of an arrow
 NOTE_COLUMNS = 150
@@ -144,8 +145,9 @@ def colour_bar(figure, mappable, axes, label, **options):
     """A bar that takes its place below the axes, whatever their shape."""
     if isinstance(mappable.norm, LogNorm):
         options["format"] = "%g"  # powers of ten as formulas take long
-    bar = figure.colorbar(mappable, ax=axes, label=label, orientation="horizontal", fraction=0.05, pad=0.13,
-                          **{"aspect": 40, **options})
+    height_inches = np.ravel(axes)[0].get_position().height * figure.get_figheight()
+    bar = figure.colorbar(mappable, ax=axes, label=label, orientation="horizontal", fraction=0.05,
+                          pad=BAR_GAP_INCHES / height_inches, **{"aspect": 40, **options})
     bar.minorticks_off()
     return bar
 

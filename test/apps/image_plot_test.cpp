@@ -66,6 +66,26 @@ TEST(ImagePlot, AContourIsWhereTheFieldHasItsLevel) {
   EXPECT_EQ(pixel(after, kWidth / 2 + 6, v), pixel(before, kWidth / 2 + 6, v));
 }
 
+/// How many rows of a contour are hidden by what is drawn over it: its number.
+int numHiddenRows(const cv::Mat& with_contours, const cv::Mat& without, int u) {
+  int num_rows = 0;
+  for (int v = 0; v < kHeight; ++v) {
+    num_rows += cv::norm(pixel(with_contours, u, v), pixel(without, u, v)) < 50.0 ? 1 : 0;
+  }
+  return num_rows;
+}
+
+TEST(ImagePlot, EveryContourHasItsNumberWhereTheLinesAreClose) {
+  ImagePlot plot("ramp", kWidth, kHeight);
+  plot.drawField(ramp(), 1.0, "px");
+  const cv::Mat before = plot.picture();
+  const std::vector<double> levels = {0.5, 0.51, 0.52};
+  plot.drawContours(ramp(), levels, 1.0);
+  for (const double level : levels) {
+    EXPECT_GT(numHiddenRows(plot.picture(), before, static_cast<int>(level * kWidth)), 5) << level;
+  }
+}
+
 TEST(ImagePlot, AVectorIsDrawnAtItsPlaceAndMagnified) {
   ImagePlot plot("vector", kWidth, kHeight);
   plot.drawVector({100.0, 100.0}, {0.5, 0.0}, 100.0, {0.0, 0.0, 255.0});

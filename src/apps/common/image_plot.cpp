@@ -81,8 +81,8 @@ cv::Mat1f distanceToLevel(const cv::Mat1f& field, double level) {
   return distance;
 }
 
-/// A place on the line for its number: to the right of and below the centre, where there is one.
-std::optional<cv::Point> labelPlace(const cv::Mat1f& distance) {
+/// A place on the line for its number, nearest to the right of and below the centre; empty where `is_taken` covers all.
+std::optional<cv::Point> labelPlace(const cv::Mat1f& distance, const cv::Mat1b& is_taken) {
   constexpr float kOnLine = 0.7F;
   const cv::Point2d wanted(0.8 * distance.cols, 0.75 * distance.rows);
   std::optional<cv::Point> best;
@@ -91,13 +91,20 @@ std::optional<cv::Point> labelPlace(const cv::Mat1f& distance) {
   for (int y = kGap * 2; y < distance.rows - kGap * 2; ++y) {
     for (int x = margin; x < distance.cols - margin; ++x) {
       const double away = cv::norm(cv::Point2d(x, y) - wanted);
-      if (distance(y, x) < kOnLine && away < best_distance) {
+      if (distance(y, x) < kOnLine && is_taken(y, x) == 0 && away < best_distance) {
         best = cv::Point(x, y);
         best_distance = away;
       }
     }
   }
   return best;
+}
+
+/// Where the middle of a label of this size would lie over a place of the mask.
+cv::Mat1b around(const cv::Mat& mask, const cv::Size& label) {
+  cv::Mat1b result;
+  cv::dilate(mask, result, cv::getStructuringElement(cv::MORPH_RECT, label));
+  return result;
 }
 
 void drawLine(const cv::Mat1f& distance, const cv::Scalar& ink, cv::Mat area) {
@@ -214,23 +221,31 @@ void ImagePlot::drawColourBar(double largest, const std::string& label) {
 void ImagePlot::drawContours(const ImageField& field, const std::vector<double>& levels, double largest) {
   const cv::Mat1f amounts = resampled(field);
   cv::Mat target = canvas_(area());
-  std::vector<cv::Rect> labels;
+  std::vector<cv::Mat1f> distances;
+  std::vector<cv::Mat> lines;
   for (const double level : levels) {
-    const cv::Mat1f distance = distanceToLevel(amounts, level);
-    const cv::Scalar ink = inkOn(level / largest);
-    drawLine(distance, ink, target);
-    const std::optional<cv::Point> place = labelPlace(distance);
-    const std::string text = numberText(level);
+    distances.push_back(distanceToLevel(amounts, level));
+    lines.emplace_back(distances.back() < 1.0F);
+    drawLine(distances.back(), inkOn(level / largest), target);
+  }
+  cv::Mat labels = cv::Mat::zeros(target.size(), CV_8U);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::string text = numberText(levels[i]);
     const cv::Size extent = sizeOf(text, kTextSize) + cv::Size(kGap, kGap);
-    if (!place) {
-      continue;
+    cv::Mat taken = labels.clone();
+    for (std::size_t other = 0; other < levels.size(); ++other) {
+      taken.setTo(255, other == i ? labels : lines[other]);
     }
-    const cv::Rect box(*place - cv::Point(extent.width / 2, extent.height / 2), extent);
-    if (std::none_of(labels.begin(), labels.end(), [&](const cv::Rect& other) { return (box & other).area() > 0; })) {
-      coloured(cv::Mat1f(box.size(), static_cast<float>(level / largest)))
-          .copyTo(target(box & cv::Rect({0, 0}, target.size())));
-      write(target, text, *place, Align::kCentre, kTextSize, ink);
-      labels.push_back(box);
+    std::optional<cv::Point> place = labelPlace(distances[i], around(taken, extent));
+    if (!place) {
+      place = labelPlace(distances[i], around(labels, extent));
+    }
+    if (place) {
+      const cv::Rect box = cv::Rect(*place - cv::Point(extent / 2), extent) & cv::Rect({0, 0}, target.size());
+      const double share = levels[i] / largest;
+      target(box).setTo(colourOf(share));
+      write(target, text, *place, Align::kCentre, kTextSize, inkOn(share));
+      labels(box).setTo(255);
     }
   }
 }

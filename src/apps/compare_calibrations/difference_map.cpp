@@ -28,6 +28,13 @@ ImageField differenceField(const camera::Camera& camera, const calibration::Proj
   return field;
 }
 
+/// A multiple of a tenth or more of the value, so that nearly all colours of the scale are used.
+double scaleEnd(double value) {
+  constexpr double kStep = 0.1;
+  const double step = roundUp(kStep * value);
+  return step * std::ceil(value / step);
+}
+
 /// Nearly all differences of all cameras are below.
 double largestOf(const RigComparison& comparison) {
   constexpr double kShare = 0.99;
@@ -39,7 +46,7 @@ double largestOf(const RigComparison& comparison) {
   }
   std::sort(lengths_px.begin(), lengths_px.end());
   const auto position = static_cast<std::size_t>(kShare * static_cast<double>(lengths_px.size() - 1));
-  return roundUp(std::max(kSmallest_px, lengths_px[position]));
+  return scaleEnd(std::max(kSmallest_px, lengths_px[position]));
 }
 
 /// 1-2-5 numbers below `largest`, the largest few.
@@ -47,7 +54,7 @@ std::vector<double> contourLevels(double largest) {
   constexpr std::size_t kNumLevels = 4;
   constexpr double kNext = 0.4;  // rounds up to the next smaller 1-2-5 number
   std::vector<double> levels;
-  for (double level = largest; levels.size() < kNumLevels;) {
+  for (double level = roundUp(largest); levels.size() < kNumLevels;) {
     level = roundUp(kNext * level);
     levels.push_back(level);
   }
