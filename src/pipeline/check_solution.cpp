@@ -10,9 +10,6 @@
 namespace tartan_calib::pipeline {
 namespace {
 
-/// Stdev of a focal length over the focal length. Usable calibrations stay below 0.01; those of too few views below 0.1.
-constexpr double kMeaninglessFocal_ratio = 0.2;
-
 /// The views with only those corners that the solve used.
 std::vector<observation::View> usedViews(const calibration::Solution& solution) {
   std::vector<observation::View> views = solution.views;
@@ -50,7 +47,7 @@ void checkFocalLengths(const calibration::Solution& solution) {
   }
   for (std::size_t i = 0; i < solution.rig.cameras.size(); ++i) {
     const double uncertainty_ratio = calibration::focalStdevRatio(solution, static_cast<int>(i));
-    if (uncertainty_ratio > kMeaninglessFocal_ratio) {
+    if (uncertainty_ratio > calibration::kMeaninglessFocal_ratio) {
       throw CalibrationError(
           cameraName(i) +
           format(": the solver did not converge, and the focal length is uncertain to %.0f %%: the views do not determine "

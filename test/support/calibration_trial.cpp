@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tartan_calib/calibration/intrinsics_uncertainty.h"
 #include "tartan_calib/calibration/pose.h"
 #include "tartan_calib/calibration/solve.h"
 #include "tartan_calib/error.h"
@@ -91,8 +92,9 @@ PosedCamera startAndSolve(const std::string& model_name, const Scene& scene,
     }
   }
   const calibration::Solution solution = calibration::solve(problem, calibration::SolveOptions());
-  if (solution.status != calibration::SolveStatus::kConverged) {
-    throw CalibrationError("the solver did not converge within " + std::to_string(solution.iterations) + " iterations");
+  const bool is_converged = solution.status == calibration::SolveStatus::kConverged;
+  if (!is_converged && calibration::focalStdevRatio(solution, 0) > calibration::kMeaninglessFocal_ratio) {
+    throw CalibrationError("the solver did not converge, and the focal length is open");
   }
   posed.camera = solution.rig.cameras[0].camera;
   std::size_t solved = 0;

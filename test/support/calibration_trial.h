@@ -63,8 +63,8 @@ PosedCamera withPoses(const camera::Camera& camera, const Scene& scene, const st
 /// Share of all corners, wrong ones at their right place, that the camera puts within `limit_px` of the truth.
 double shareWithin(double limit_px, const PosedCamera& posed, const Scene& scene);
 
-/// The start followed by the solve of all views; views without a pose keep none. Throws CalibrationError where the solve
-/// does not converge.
+/// The start followed by the solve of all views; views without a pose keep none. Throws CalibrationError where calibrate
+/// would refuse the result.
 PosedCamera startAndSolve(const std::string& model_name, const Scene& scene,
                           const std::vector<observation::CameraView>& views);
 

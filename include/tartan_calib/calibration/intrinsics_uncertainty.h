@@ -13,4 +13,7 @@ Eigen::MatrixXd intrinsicsCovariance(const Solution& solution, int camera_index)
 /// ds-none may be open where the scale is known: xi and alpha make up for it.)
 double focalStdevRatio(const Solution& solution, int camera_index);
 
+/// From here on a focal length is no knowledge. Usable calibrations stay below 0.01; those of too few views below 0.1.
+constexpr double kMeaninglessFocal_ratio = 0.2;
+
 }  // namespace tartan_calib::calibration
