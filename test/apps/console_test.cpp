@@ -95,7 +95,7 @@ TEST(Console, KeepsKalibrsLinesInKalibrsOrder) {
                            "initialized cam1 to:\n\t projection cam1: [",
                            "initializing calibrator\n",
                            "starting calibration...\n",
-                           "\nAll views have been processed.\n",
+                           "\nAll views have been processed.\n\nStarting final outlier filtering...\n",
                            "Calibration complete.\n",
                            "[ WARN] [",
                            "]: Removed 3 outlier corners.\n",

@@ -171,7 +171,11 @@ void Console::printResult(const pipeline::CalibrationResult& result) {
   const calibration::Solution& solution = result.solution;
   const auto num_used = std::count_if(solution.views.begin(), solution.views.end(), hasUsedCorner);
   const std::size_t num_views = solution.views.size() + static_cast<std::size_t>(result.num_dropped_views);
-  std::printf("\nAll views have been processed.\n\n%s\n\nCalibration complete.\n\n", kDots);
+  std::printf("\nAll views have been processed.\n\n");
+  if (inputs_.options.solve.final_filtering) {
+    std::printf("Starting final outlier filtering...\n");  // scripts wait for it; each solve ended with that
+  }
+  std::printf("%s\n\nCalibration complete.\n\n", kDots);
   printWarning("Removed " + std::to_string(numRejected(solution)) + " outlier corners.");
   std::printf("\nProcessed %zu images with %td images used\n", num_views, num_used);
   std::printf("%s\n", io::resultsText(result).c_str());
