@@ -10,17 +10,19 @@
 namespace tartan_calib::pipeline {
 namespace {
 
-/// The views with only those corners that the solve used.
-std::vector<observation::View> usedViews(const calibration::Solution& solution) {
-  std::vector<observation::View> views = solution.views;
-  for (observation::View& view : views) {
-    for (observation::CameraView& image : view.cameras) {
-      auto& corners = image.corners;
-      corners.erase(std::remove_if(corners.begin(), corners.end(), [](const auto& corner) { return !corner.used; }),
-                    corners.end());
+/// Views in which both of two cameras have corners that the solve used.
+Eigen::MatrixXi agreeingViews(const calibration::Solution& solution) {
+  const auto num_cameras = static_cast<Eigen::Index>(solution.rig.cameras.size());
+  Eigen::MatrixXi count = Eigen::MatrixXi::Zero(num_cameras, num_cameras);
+  for (const observation::View& view : solution.views) {
+    Eigen::VectorXi is_used = Eigen::VectorXi::Zero(num_cameras);
+    for (const observation::CameraView& image : view.cameras) {
+      is_used(image.camera_index) =
+          std::any_of(image.corners.begin(), image.corners.end(), [](const auto& corner) { return corner.used; }) ? 1 : 0;
     }
+    count += is_used * is_used.transpose();
   }
-  return views;
+  return count;
 }
 
 void checkAgreement(const calibration::Solution& solution, bool is_rig_open) {
@@ -33,9 +35,7 @@ void checkAgreement(const calibration::Solution& solution, bool is_rig_open) {
     }
   }
   if (is_rig_open) {
-    const int num_cameras = static_cast<int>(solution.rig.cameras.size());
-    calibration::requireConnected(calibration::cameraGraph(usedViews(solution), num_cameras).shared_views,
-                                  "views in which corners of both agree",
+    calibration::requireConnected(agreeingViews(solution), "views in which corners of both agree",
                                   "check that the cameras are in sync (inspect_bag) and fixed to each other");
   }
 }

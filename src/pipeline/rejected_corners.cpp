@@ -1,6 +1,7 @@
 #include "rejected_corners.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -16,25 +17,38 @@ void add(const std::map<int, Corner>& rejected, CameraView& image) {
             [](const Corner& a, const Corner& b) { return a.corner_id < b.corner_id; });
 }
 
+bool has(const CameraView& image, int corner_id) {
+  const auto at = std::lower_bound(image.corners.begin(), image.corners.end(), corner_id,
+                                   [](const Corner& corner, int id) { return corner.corner_id < id; });
+  return at != image.corners.end() && at->corner_id == corner_id;
+}
+
 }  // namespace
 
 void RejectedCorners::update(const std::vector<CameraCorners>& before, const std::vector<CameraCorners>& after) {
+  std::map<ImageKey, const CameraView*> kept;
+  for (std::size_t camera = 0; camera < after.size(); ++camera) {
+    for (const CameraView& image : after[camera].images) {
+      kept[{static_cast<int>(camera), image.stamp_ns}] = &image;
+    }
+  }
   for (std::size_t camera = 0; camera < before.size(); ++camera) {
     for (const CameraView& image : before[camera].images) {
+      const ImageKey key(static_cast<int>(camera), image.stamp_ns);
+      const auto now = kept.find(key);
       for (Corner corner : image.corners) {
-        corner.used = false;
-        images_[{static_cast<int>(camera), image.stamp_ns}][corner.corner_id] = corner;
+        if (now == kept.end() || !has(*now->second, corner.corner_id)) {
+          corner.used = false;
+          images_[key][corner.corner_id] = corner;
+        }
       }
     }
   }
-  for (std::size_t camera = 0; camera < after.size(); ++camera) {
-    for (const CameraView& image : after[camera].images) {
-      const auto rejected = images_.find({static_cast<int>(camera), image.stamp_ns});
-      for (const Corner& corner : image.corners) {
-        if (rejected != images_.end()) {
-          rejected->second.erase(corner.corner_id);
-        }
-      }
+  for (auto& [key, corners] : images_) {
+    const auto now = kept.find(key);
+    for (auto corner = corners.begin(); corner != corners.end();) {
+      const bool is_back = now != kept.end() && has(*now->second, corner->first);
+      corner = is_back ? corners.erase(corner) : std::next(corner);
     }
   }
 }
