@@ -70,6 +70,7 @@ PosedCamera solveCamera(const PosedCamera& start, const std::vector<Eigen::Vecto
   }
   SolveOptions options;
   options.num_threads = num_threads;
+  options.only_robust = true;
   const Solution solution = solve(problem, options);
   PosedCamera solved{solution.rig.cameras.front().camera, start.poses};
   for (std::size_t i = 0; i < posed.size(); ++i) {

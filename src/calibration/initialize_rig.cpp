@@ -69,11 +69,16 @@ Problem initializeRig(const std::vector<camera::Camera>& cameras, const std::vec
                       const std::vector<View>& views, const RigStartOptions& options) {
   const std::optional<Rig>& known_rig = options.known_rig;
   const int num_cameras = static_cast<int>(cameras.size());
+  const auto known_pose = [&](std::size_t v) {
+    return options.known_poses.empty() ? std::optional<Rigid3>() : options.known_poses.at(v);
+  };
   std::vector<ViewPoses> poses(views.size());
   solver::forEachChunk(static_cast<int>(views.size()), options.num_threads, [&](const solver::Chunk& chunk) {
     for (int i = chunk.begin; i < chunk.end; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      poses[at] = posesOf(cameras, target_points, views[at]);
+      if (!known_pose(at)) {
+        poses[at] = posesOf(cameras, target_points, views[at]);
+      }
     }
   });
   if (!known_rig) {
@@ -87,9 +92,9 @@ Problem initializeRig(const std::vector<camera::Camera>& cameras, const std::vec
     problem.rig.cameras.push_back({cameras[i], known_rig ? known_rig->cameras.at(i).T_cam_rig : T_cam_rig[i]});
   }
   for (std::size_t v = 0; v < views.size(); ++v) {
-    if (!poses[v].empty()) {
+    if (const std::optional<Rigid3> known = known_pose(v); known || !poses[v].empty()) {
       problem.views.push_back(views[v]);
-      problem.T_rig_target.push_back(bestRigPose(problem.rig, target_points, views[v], poses[v]));
+      problem.T_rig_target.push_back(known ? *known : bestRigPose(problem.rig, target_points, views[v], poses[v]));
     }
   }
   return problem;

@@ -18,13 +18,30 @@ namespace {
 constexpr std::array<double, 3> kCauchyWidths = {5.0, 2.0, 1.0};  ///< in robust stdevs of each camera's residuals
 constexpr int kMaxSelections = 4;                                 ///< rounds of choosing corners and solving; two are usual
 
-/// An annealing stage has converged when the next step would move predictions by a hundredth of the residuals (squared); the
-/// last when it would move no parameter by more than a thousandth of its stdev.
-constexpr double kAnnealingTolerance = 1e-4;
-constexpr double kFinalAccuracy = 1e-3;
-/// Steps that fail although they promise to move parameters by so much, in stdevs: ds-none has a valley so flat and bent
-/// where few views are narrow. There the place in the valley is of no consequence for the image.
-constexpr double kNegligible = 0.05;
+/// When a minimum is reached, as shares of the cost.
+struct Accuracy {
+  double tolerance = 0.0;   ///< that the next step would lower it by
+  double negligible = 0.0;  ///< that steps may promise and not keep
+  double initial_damping = 0.0;
+  double newton_damping = 0.0;
+};
+
+/// Of a stage after which corners are weighted or chosen anew: the next step would move predictions by a hundredth of the
+/// residuals. Damping that hides more along a valley is of no consequence for predictions.
+constexpr Accuracy kRough = {1e-4, 1e-4, 1e-6, 1e-6};
+
+/// Of the last stage: the next step would move no parameter by more than a thousandth of its stdev.
+Accuracy finalAccuracy(int num_corners) {
+  constexpr double kFinal_stdevs = 1e-3;
+  // Steps that fail although they promise to move parameters by so much: ds-none has a valley so flat and bent where few
+  // views are narrow. There the place in the valley is of no consequence for the image.
+  constexpr double kNegligible_stdevs = 0.05;
+  // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
+  const double ratio_per_stdev2 = 1.0 / (2.0 * num_corners);
+  return {kFinal_stdevs * kFinal_stdevs * ratio_per_stdev2, kNegligible_stdevs * kNegligible_stdevs * ratio_per_stdev2, 1e-8,
+          1e-9};
+}
+
 constexpr double kExactResidual_px = 1e-9;  ///< data without noise are fitted to this rms
 
 struct UsedCorners {
@@ -84,7 +101,9 @@ class BatchSolve {
 
   Solution run() {
     anneal();
-    leastSquares();
+    if (!options_.only_robust) {
+      leastSquares();
+    }
     keepStartOfUnsolvedViews();
     return solution();
   }
@@ -101,7 +120,7 @@ class BatchSolve {
         losses.push_back({RobustLoss::Kind::kCauchy, kCauchyWidths[static_cast<std::size_t>(stage)] * sigma});
       }
       batch_.setLosses(std::move(losses));
-      minimize(stage, kAnnealingTolerance, kAnnealingTolerance);
+      minimize(stage, kRough);
     }
   }
 
@@ -113,8 +132,9 @@ class BatchSolve {
     const int num_selections = options_.final_filtering ? kMaxSelections : 1;
     for (int i = 0; i <= num_selections && !isCancelled(); ++i) {
       // The annealed model follows the bulk of the corners; the sigma rule waits for one that follows all but gross errors.
-      const Selection selection = i == 0 ? Selection::kGrossErrors : Selection::kAllRules;
-      if (!selectCorners(options_, selection, batch_) && i > 0) {
+      const bool is_rough = i == 0;
+      const bool is_changed = selectCorners(options_, is_rough ? Selection::kGrossErrors : Selection::kAllRules, batch_);
+      if (!is_changed && i > 1) {
         return;
       }
       const int num_corners = usedCorners(batch_).num_corners;
@@ -123,21 +143,20 @@ class BatchSolve {
       }
       model_errors_px_ = modelErrors(batch_);
       setModelErrors(model_errors_px_, batch_);
-      // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
-      const double ratio_per_stdev2 = 1.0 / (2.0 * num_corners);
-      minimize(numAnnealingStages() + i, kFinalAccuracy * kFinalAccuracy * ratio_per_stdev2,
-               kNegligible * kNegligible * ratio_per_stdev2);
+      minimize(numAnnealingStages() + i, is_rough ? kRough : finalAccuracy(num_corners));
     }
   }
 
-  void minimize(int stage, double relative_tolerance, double negligible_ratio) {
+  void minimize(int stage, const Accuracy& accuracy) {
     const double num_residuals = 2.0 * std::max(1, usedCorners(batch_).num_corners);
     solver::Options options;
     options.linear_solver = solverChoice(options_.linear_solver);
     options.num_threads = options_.num_threads;
     options.max_iterations = options_.max_iterations;
-    options.relative_tolerance = relative_tolerance;
-    options.negligible_ratio = negligible_ratio;
+    options.relative_tolerance = accuracy.tolerance;
+    options.negligible_ratio = accuracy.negligible;
+    options.initial_damping = accuracy.initial_damping;
+    options.newton_damping = accuracy.newton_damping;
     options.absolute_tolerance = 0.5 * num_residuals * kExactResidual_px * kExactResidual_px;
     if (options_.progress) {
       options.progress = [&, stage, num_residuals](int iteration, double cost) {
@@ -174,7 +193,7 @@ class BatchSolve {
     solution.board_warp_m = batch_.state().board_warp_m;
     solution.model_errors_px = model_errors_px_;
     copyCorners(solution);
-    if (!isCancelled()) {
+    if (!isCancelled() && !options_.only_robust) {
       estimateUncertainty(solution);
     }
     return solution;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -25,6 +26,8 @@ using observation::CameraView;
 using observation::Corner;
 
 constexpr std::size_t kMinCorners = 4;  ///< fewer determine no pose
+
+bool isUsed(const Corner& corner) { return corner.used; }
 
 /// Why no image of a camera can take part, and what helps.
 std::string noUsableImages(const CameraCorners& corners, const target::Target& target, int min_tags) {
@@ -68,11 +71,34 @@ std::vector<CameraView> unusedImages(const std::vector<CameraCorners>& cameras, 
   return unused;
 }
 
+/// T_rig_target of the views that a solution explains already: at least half of the corners of one of their images.
+std::vector<std::optional<geometry::Rigid3>> explainedPoses(const calibration::Solution& solution,
+                                                            const std::vector<observation::View>& views) {
+  std::map<std::pair<int, std::int64_t>, geometry::Rigid3> by_image;
+  for (std::size_t v = 0; v < solution.views.size(); ++v) {
+    for (const CameraView& image : solution.views[v].cameras) {
+      const auto num_used = std::count_if(image.corners.begin(), image.corners.end(), isUsed);
+      if (num_used > 0 && 2 * num_used >= static_cast<std::ptrdiff_t>(image.corners.size())) {
+        by_image[{image.camera_index, image.stamp_ns}] = solution.T_rig_target[v];
+      }
+    }
+  }
+  std::vector<std::optional<geometry::Rigid3>> poses(views.size());
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    for (const CameraView& image : views[v].cameras) {
+      if (const auto found = by_image.find({image.camera_index, image.stamp_ns}); found != by_image.end()) {
+        poses[v] = found->second;
+        break;
+      }
+    }
+  }
+  return poses;
+}
+
 void countUsedImages(const calibration::Solution& solution, std::vector<CameraReport>& cameras) {
-  const auto is_used = [](const Corner& corner) { return corner.used; };
   for (const observation::View& view : solution.views) {
     for (const CameraView& image : view.cameras) {
-      const bool has_used = std::any_of(image.corners.begin(), image.corners.end(), is_used);
+      const bool has_used = std::any_of(image.corners.begin(), image.corners.end(), isUsed);
       cameras[static_cast<std::size_t>(image.camera_index)].num_images_used += has_used ? 1 : 0;
     }
   }
@@ -162,8 +188,8 @@ calibration::Problem CalibrationRun::startRig() {
   begin(Stage::kStartRig);
   const std::vector<observation::View> views = calibration::synchronize(usable_, options_.approx_sync_ns);
   result_.graph = calibration::cameraGraph(views, static_cast<int>(started_.size()));
-  calibration::Problem problem =
-      calibration::initializeRig(started_, target_points_, views, {known_rig_, options_.num_threads});
+  calibration::Problem problem = calibration::initializeRig(
+      started_, target_points_, views, {known_rig_, explainedPoses(result_.solution, views), options_.num_threads});
   result_.num_dropped_views = static_cast<int>(views.size() - problem.views.size());
   end();
   return problem;

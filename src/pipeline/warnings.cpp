@@ -171,6 +171,21 @@ std::optional<std::string> pupilNote(const CalibrationResult& result, int camera
                 1e3 * camera.pupil.at_m(angle_rad), angle_rad * kDegreesPerRadian);
 }
 
+std::vector<std::string> solutionWarnings(const calibration::Solution& solution) {
+  std::vector<std::string> warnings;
+  if (solution.status != calibration::SolveStatus::kConverged) {
+    warnings.push_back(
+        format("the solver did not converge within %d iterations: the views leave parameters open, or do not fit together; "
+               "record more of them, or try one of --models with fewer parameters",
+               solution.iterations));
+  }
+  if (!solution.undetermined.empty()) {
+    warnings.push_back("the views do not determine " + joined(solution.undetermined) +
+                       ": record the board at more angles and distances");
+  }
+  return warnings;
+}
+
 std::vector<std::string> resultWarnings(const CalibrationResult& result) {
   std::vector<std::string> warnings;
   const auto append = [&warnings](const std::vector<std::string>& more) {
@@ -183,13 +198,7 @@ std::vector<std::string> resultWarnings(const CalibrationResult& result) {
     warnings.push_back(
         format("%d views were left out because no pose of the board explains them", result.num_dropped_views));
   }
-  if (result.solution.status != calibration::SolveStatus::kConverged) {
-    warnings.push_back(format("the solver did not converge within %d iterations", result.solution.iterations));
-  }
-  if (!result.solution.undetermined.empty()) {
-    warnings.push_back("the views do not determine " + joined(result.solution.undetermined) +
-                       ": record the board at more angles and distances");
-  }
+  append(solutionWarnings(result.solution));
   return warnings;
 }
 

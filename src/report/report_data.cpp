@@ -1,6 +1,8 @@
 #include "tartan_calib/report/report_data.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "json.h"
@@ -210,6 +212,17 @@ std::string boardText(const pipeline::CalibrationResult& result) {
   return json(rows);
 }
 
+/// Warnings that the verdict does not state already.
+std::vector<std::string> notes(const ReportData& data) {
+  std::vector<std::string> notes;
+  std::copy_if(
+      data.result.warnings.begin(), data.result.warnings.end(), std::back_inserter(notes), [&](const std::string& warning) {
+        const std::vector<Reason>& reasons = data.verdict.reasons;
+        return std::none_of(reasons.begin(), reasons.end(), [&](const Reason& reason) { return reason.text == warning; });
+      });
+  return notes;
+}
+
 }  // namespace
 
 void writeReportData(const std::string& folder, const ReportData& data) {
@@ -222,7 +235,7 @@ void writeReportData(const std::string& folder, const ReportData& data) {
   object.add("recording", data.recording)
       .addText("verdict", verdictText(data.verdict))
       .add("results_text", io::resultsText(result))
-      .add("warnings", result.warnings)
+      .add("warnings", notes(data))
       .addText("rounds", jsonListOf(result.rounds, roundText))
       .addText("timings", jsonListOf(data.analysis.timings, timingText))
       .add("shared_corners", Eigen::MatrixXd(result.graph.shared_corners.cast<double>()))

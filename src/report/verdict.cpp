@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tartan_calib/pipeline/warnings.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::report {
@@ -202,12 +203,8 @@ void judgeTiming(const CameraTiming& timing, std::vector<Reason>& reasons) {
 
 void judgeRig(const pipeline::CalibrationResult& result, std::vector<Reason>& reasons) {
   const calibration::Solution& solution = result.solution;
-  if (solution.status != calibration::SolveStatus::kConverged) {
-    reasons.push_back({Grade::kRepeat, format("the solver did not converge within %d iterations", solution.iterations)});
-  }
-  if (!solution.undetermined.empty()) {
-    reasons.push_back({Grade::kRepeat, "the views do not determine " + joined(solution.undetermined) +
-                                           ": record the board at more angles and distances"});
+  for (const std::string& text : pipeline::solutionWarnings(solution)) {
+    reasons.push_back({Grade::kRepeat, text});
   }
   for (Eigen::Index i = 1; i < result.graph.shared_views.rows(); ++i) {
     const int shared = result.graph.shared_views.row(i).head(i).maxCoeff();

@@ -14,22 +14,31 @@
 namespace tartan_calib::solver {
 namespace {
 
-constexpr double kInitialDamping = 1e-6;  ///< relative to diag(H): close to Gauss-Newton, as starts are usually good
-constexpr double kMinDamping = 1e-12;     ///< keeps undetermined directions solvable
-constexpr double kNewtonDamping = 1e-9;   ///< up to here a step counts as a Gauss-Newton step
+constexpr double kMinDamping = 1e-12;  ///< keeps undetermined directions solvable
 constexpr double kMaxDamping = 1e12;
 constexpr double kDampingDecrease = 0.3;
 constexpr double kDampingIncrease = 3.0;  ///< grows with every rejection in a row
 constexpr int kMaxCorrections = 2;
-constexpr int kPatience = 10;      ///< iterations that together must gain something
-constexpr double kMaxRise = 10.0;  ///< a step that raises the cost by more is beyond correction
-constexpr double kGoodGain = 0.5;  ///< actual over promised change of cost from which on damping falls
+constexpr int kPatience = 10;           ///< iterations that together must gain something
+constexpr double kMaxRise = 10.0;       ///< a step that raises the cost by more is beyond correction
+constexpr double kGoodGain = 0.5;       ///< actual over promised change of cost from which on damping falls
+constexpr double kSmallPromise = 1e-3;  ///< of the cost: a step close to a minimum
+constexpr double kMinShare = 0.25;      ///< a step that has to be shortened to less is left to corrections and damping
 
 /// A step with what the quadratic model promises.
 struct Candidate {
   Step step;
+  double slope = 0.0;     ///< of the cost, along the step
   double promised = 0.0;  ///< decrease of the cost
 };
+
+Step scaled(Step step, double share) {
+  step.shared *= share;
+  for (BlockVector& block : step.blocks) {
+    block *= share;
+  }
+  return step;
+}
 
 class Minimizer {
  public:
@@ -71,12 +80,12 @@ class Minimizer {
 
   /// Damping makes any promise small, so that only an almost undamped step can tell that there is nothing left to gain.
   void tryUndamped() {
-    if (damping_ <= kNewtonDamping) {
+    if (damping_ <= options_.newton_damping) {
       finish(Status::kConverged);
     } else if (undamped_failed_) {
       giveUp();
     } else {
-      damping_ = kNewtonDamping;
+      damping_ = options_.newton_damping;
     }
   }
 
@@ -99,8 +108,8 @@ class Minimizer {
     problem_.save();
     problem_.move(candidate.step);
     double cost = totalCost(problem_, options_.num_threads);
-    if (!(cost < equations_.cost)) {
-      cost = costAfterCorrection(cost);
+    if (!(equations_.cost - cost >= kGoodGain * candidate.promised)) {
+      cost = costOfBetterStep(candidate, cost);
     }
     if (!(cost < equations_.cost)) {
       problem_.restore();
@@ -114,10 +123,38 @@ class Minimizer {
     return true;
   }
 
+  /// For a step that gains too little.
+  double costOfBetterStep(const Candidate& candidate, double cost) {
+    if (candidate.promised < kSmallPromise * equations_.cost) {
+      cost = costAfterShortening(candidate, cost);
+    }
+    return cost < equations_.cost ? cost : costAfterCorrection(cost);
+  }
+
+  /// Close to a minimum with residuals such a step is too long: where J'J is less than the cost's true curvature,
+  /// Gauss-Newton steps swing about the minimum. The parabola through the cost here, its slope and the cost there has its
+  /// own near by.
+  double costAfterShortening(const Candidate& candidate, double cost) {
+    const double curvature = 2.0 * (cost - equations_.cost - candidate.slope);
+    const double share = -candidate.slope / curvature;
+    if (!(share > kMinShare)) {
+      return cost;
+    }
+    problem_.restore();
+    problem_.move(scaled(candidate.step, share));
+    const double shortened = totalCost(problem_, options_.num_threads);
+    if (shortened < std::min(cost, equations_.cost)) {
+      return shortened;
+    }
+    problem_.restore();
+    problem_.move(candidate.step);
+    return cost;
+  }
+
   /// Where unknowns trade off against each other, the cost is a narrow curved valley: a long step along it ends up on its
   /// side, another from there back on its floor. Without the second only short ones would lower the cost.
   double costAfterCorrection(double cost) {
-    for (int i = 0; i < kMaxCorrections && cost >= equations_.cost && cost < kMaxRise * equations_.cost; ++i) {
+    for (int i = 0; i < kMaxCorrections && !(cost < equations_.cost) && cost < kMaxRise * equations_.cost; ++i) {
       const std::optional<Candidate> correction = propose(linearizeAll(problem_, options_.num_threads));
       if (!correction) {
         return cost;
@@ -144,7 +181,7 @@ class Minimizer {
   }
 
   void reject() {
-    undamped_failed_ = undamped_failed_ || damping_ <= kNewtonDamping;
+    undamped_failed_ = undamped_failed_ || damping_ <= options_.newton_damping;
     damping_ *= increase_;
     increase_ *= kDampingIncrease;
     if (damping_ > kMaxDamping) {
@@ -172,8 +209,8 @@ class Minimizer {
         return std::nullopt;
       }
       if (!prescribeViolations(*step, limits, prescribed)) {
-        const double promised = -modelChange(equations, *step);
-        return Candidate{std::move(*step), promised};
+        const Prediction prediction = predict(equations, *step);
+        return Candidate{std::move(*step), prediction.slope, -prediction.change()};
       }
     }
   }
@@ -195,7 +232,7 @@ class Minimizer {
   const Options& options_;
   NormalEquations equations_;
   Summary summary_;
-  double damping_ = kInitialDamping;
+  double damping_ = options_.initial_damping;
   double increase_ = kDampingIncrease;
   bool use_sparse_ = false;
   bool undamped_failed_ = false;

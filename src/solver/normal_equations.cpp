@@ -99,14 +99,15 @@ BlockVector timesShared(const BlockTerms& block, const Eigen::VectorXd& shared_s
   return product;
 }
 
-double modelChange(const NormalEquations& equations, const Step& step) {
-  double change = step.shared.dot(equations.g_s + 0.5 * (equations.H_ss * step.shared));
+Prediction predict(const NormalEquations& equations, const Step& step) {
+  Prediction prediction{step.shared.dot(equations.g_s), step.shared.dot(equations.H_ss * step.shared)};
   for (std::size_t k = 0; k < equations.blocks.size(); ++k) {
     const BlockTerms& block = equations.blocks[k];
     const BlockVector& d = step.blocks[k];
-    change += d.dot(block.g_b + timesShared(block, step.shared) + 0.5 * (block.H_bb * d));
+    prediction.slope += d.dot(block.g_b);
+    prediction.curvature += d.dot(2.0 * timesShared(block, step.shared) + block.H_bb * d);
   }
-  return change;
+  return prediction;
 }
 
 }  // namespace tartan_calib::solver

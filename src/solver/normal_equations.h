@@ -36,8 +36,15 @@ Eigen::Matrix<double, Matrix::RowsAtCompileTime, 1> dampingScale(const Matrix& H
   return H.diagonal().unaryExpr([](double h) { return h > 0.0 ? h : 1.0; });
 }
 
-/// g'd + 1/2 d'H d, without damping: by how much the cost changes if it is quadratic.
-double modelChange(const NormalEquations& equations, const Step& step);
+/// The cost along a step d as the equations see it, without damping: cost + slope t + 1/2 curvature t^2 at t d.
+struct Prediction {
+  double slope = 0.0;      ///< g'd
+  double curvature = 0.0;  ///< d'H d
+
+  double change() const { return slope + 0.5 * curvature; }  ///< of the cost, by the whole step
+};
+
+Prediction predict(const NormalEquations& equations, const Step& step);
 
 /// H_bs d_s, for the shared unknowns that the block touches.
 BlockVector timesShared(const BlockTerms& block, const Eigen::VectorXd& shared_step);

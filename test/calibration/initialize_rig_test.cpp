@@ -165,11 +165,27 @@ TEST(InitializeRigPair, keeps_a_known_rig_and_leaves_out_views_that_nothing_expl
   }
   Rig known = rig;
   known.cameras[1].T_cam_rig.translation.x() += 0.01;
-  const Problem problem = initializeRig(camerasOf(rig), scene.target_points, scene.views, {known, 0});
+  const Problem problem = initializeRig(camerasOf(rig), scene.target_points, scene.views, {known, {}, 0});
   expectRig(problem.rig, known, 0.0, 1e-12);
   ASSERT_EQ(problem.views.size(), scene.views.size() - 1);
   EXPECT_EQ(problem.T_rig_target.size(), problem.views.size());
   EXPECT_EQ(problem.views[3].stamp_ns, scene.views[4].stamp_ns);
+}
+
+TEST(InitializeRigPair, takes_known_poses_and_estimates_the_others) {
+  const Rig rig = fan(2, 0.2);
+  const Scene scene = test_support::simulateScene(rig, viewsPerCamera(3, 2));
+  RigStartOptions options;
+  options.known_rig = rig;
+  options.known_poses.resize(scene.views.size());
+  const Rigid3 elsewhere(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, 7.0));
+  options.known_poses[1] = elsewhere;
+  const Problem problem = initializeRig(camerasOf(rig), scene.target_points, scene.views, options);
+  ASSERT_EQ(problem.T_rig_target.size(), scene.views.size());
+  for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    const Rigid3& expected = v == 1 ? elsewhere : scene.T_rig_target[v];
+    EXPECT_LT(geometry::logRigid(problem.T_rig_target[v] * expected.inverse()).norm(), 1e-6) << v;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solve_scenes.h"
+#include "tartan_calib/calibration/compare.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/geometry/linear_solve.h"
 
@@ -121,6 +122,24 @@ TEST(Solve, RejectsWrongCornersAndHardlyAnyOther) {
   const int num_rejected = numCorners(scene.views) - totalUsed(solution);
   EXPECT_NEAR(num_rejected, num_wrong, 0.01 * num_wrong);
   EXPECT_EQ(numCorners(solution.views), numCorners(problem.views));
+}
+
+TEST(Solve, AStartFollowsTheRightCornersAndChoosesNone) {
+  const Scene scene = sceneOf({"ds-none"}, 50);
+  Problem problem = noisyProblem(scene, kNoise_px, 5);
+  test_support::addWrongCorners(problem.views, 0.2, 20.0, 6);
+  Random random(1);
+  disturbStart(problem, random);
+  SolveOptions options;
+  const Solution complete = solve(problem, options);
+  options.only_robust = true;
+  const Solution start = solve(problem, options);
+  EXPECT_EQ(start.counts[0].outliers, 0);
+  EXPECT_EQ(start.covariance.size(), 0);
+  EXPECT_LT(start.iterations, complete.iterations);
+  const auto grid = imageGrid(scene.rig.cameras[0].camera.width, scene.rig.cameras[0].camera.height, 50.0);
+  EXPECT_LT(compareProjections(scene.rig.cameras[0].camera.model, start.rig.cameras[0].camera.model, grid).rms_px,
+            kNoise_px);
 }
 
 TEST(Solve, SurvivesWrongCornersInFiveViews) {

@@ -134,6 +134,15 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertEqual(verdict[0], "repeat")
         self.reason(verdict, r"repeat: the views do not determine cam0 projection\[0\], .*: record the board at more angles and distances")
 
+    def test_few_views_through_a_narrow_lens_of_a_model_for_wide_ones(self):
+        bag = self.recordings.simulate("endless", "--lens", "pinhole40", "--resolution", "480x360", "--views", 4,
+                                       "--tilt", 43, "--seed", 2)
+        verdict = self.verdict(bag, ["omni-radtan"])
+        self.assertEqual(verdict[0], "repeat")
+        iterations, = self.reason(verdict, r"repeat: the solver did not converge within (\d+) iterations: .* fewer parameters")
+        self.assertGreaterEqual(iterations, 100)
+        self.assertEqual(self.verdict(bag, ["pinhole-radtan"])[0], "usable")
+
     def test_frames_that_a_rolling_shutter_bent(self):
         changed = [(topic, sheared(image, 12) if index % 6 == 0 else image, time)
                    for index, (topic, image, time) in enumerate(messages(self.pinhole))]

@@ -203,6 +203,77 @@ TEST(LevenbergMarquardt, FollowsANarrowCurvedValley) {
   EXPECT_NEAR(problem.x, 1.0, kAccuracy);
 }
 
+/// r = (x, floor + bend x^2), whose second derivative J'J does not know, and normal equations that may overstate it.
+class Bowl : public BlockProblem {
+ public:
+  double x = 0.1;
+  double floor = 10.0;
+  double bend = 0.0;
+  double stiffness = 1.0;  ///< J'J is stated so many times too large
+
+  int numShared() const override { return 1; }
+  int numBlocks() const override { return 1; }
+  StepLimits stepLimits() const override {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {Eigen::VectorXd::Constant(1, -kInfinity), Eigen::VectorXd::Constant(1, kInfinity)};
+  }
+  double cost(int /*block*/) const override { return 0.5 * residuals().squaredNorm(); }
+  BlockTerms linearize(int /*block*/) const override {
+    const Eigen::Vector2d J(1.0, 2.0 * bend * x);
+    BlockTerms terms;
+    terms.cost = cost(0);
+    terms.shared = {0};
+    terms.H_ss = stiffness * J.transpose() * J;
+    terms.g_s = J.transpose() * residuals();
+    terms.H_bs = BlockRows::Zero(kBlockSize, 1);
+    return terms;
+  }
+  void move(const Step& step) override { x += step.shared(0); }
+  void save() override { saved_ = x; }
+  void restore() override { x = saved_; }
+
+ private:
+  Eigen::Vector2d residuals() const { return {x, floor + bend * x * x}; }
+
+  double saved_ = 0.0;
+};
+
+TEST(LevenbergMarquardt, ShortensStepsThatSwingAboutTheMinimum) {
+  // The curvature is 1.9 times J'J: whole steps leave 0.9 of the distance, on the other side, and take 60.
+  constexpr int kMaxIterations = 5;
+  Bowl problem;
+  problem.bend = 0.045;
+  Options options;
+  options.max_iterations = kMaxIterations;
+  EXPECT_EQ(minimize(problem, options).status, Status::kConverged);
+  EXPECT_NEAR(problem.x, 0.0, std::sqrt(2.0 * options.relative_tolerance * problem.cost(0)));
+}
+
+TEST(LevenbergMarquardt, EndsWhereIterationsTogetherGainNothingThatCounts) {
+  Bowl problem;
+  problem.stiffness = 1000.0;  // each step goes a thousandth of the way
+  Options options;
+  options.negligible_ratio = 1e-5;
+  const Summary summary = minimize(problem, options);
+  EXPECT_EQ(summary.status, Status::kConverged);
+  EXPECT_LT(summary.iterations, options.max_iterations / 2);
+
+  Bowl other;
+  other.stiffness = problem.stiffness;
+  options.negligible_ratio = 0.0;
+  EXPECT_EQ(minimize(other, options).status, Status::kMaxIterations);
+}
+
+TEST(LevenbergMarquardt, TakesADampedStepForANewtonStepUpToTheDampingThatCountsAsNone) {
+  Options options;
+  options.initial_damping = options.newton_damping = 100.0;
+  options.relative_tolerance = 1e-5;
+  Bowl problem;  // an undamped step would gain 1e-4 of the cost, this one a hundredth of it
+  EXPECT_EQ(minimize(problem, options).iterations, 0);
+  options.newton_damping = 1e-9;
+  EXPECT_GT(minimize(problem, options).iterations, 0);
+}
+
 TEST(LevenbergMarquardt, SaysWhenIterationsRunOut) {
   Rosenbrock problem;
   Options options;
@@ -229,6 +300,18 @@ TEST(LevenbergMarquardt, ReportsThatItStallsWhereAWrongJacobianPointsUphill) {
   ASSERT_EQ(minimize(problem, {}).status, Status::kConverged);
   problem.slope_error = 1.0;
   EXPECT_EQ(minimize(problem, {}).status, Status::kStalled);
+}
+
+TEST(LevenbergMarquardt, CountsAsConvergedWhereWhatFailedStepsPromiseIsNegligible) {
+  for (const double negligible_ratio : {1e-3, 0.0}) {
+    WrongJacobian problem{RandomProblemOptions()};
+    problem.slope_error = 0.0;
+    minimize(problem, {});
+    problem.slope_error = 1e-2;
+    Options options;
+    options.negligible_ratio = negligible_ratio;
+    EXPECT_EQ(minimize(problem, options).status, negligible_ratio > 0.0 ? Status::kConverged : Status::kStalled);
+  }
 }
 
 TEST(DerivativeCheck, TellsARightJacobianFromAWrongOne) {

@@ -52,6 +52,7 @@ struct SolveOptions {
   bool estimate_pupil_shift = false;  ///< camera::PupilShift of every camera whose intrinsics are not fixed
 
   bool anneal_robust_loss = true;    ///< Cauchy of falling width before the final least squares
+  bool only_robust = false;          ///< ends before least squares: a start for another solve, without uncertainty
   bool use_blake_zisserman = false;  ///< Kalibr's --use-blakezisserman weights in the final solve
   bool remove_outliers = true;
   double outlier_sigma = 4.0;   ///< a corner with |residual| above this many stdev of its camera, in u or v, is rejected

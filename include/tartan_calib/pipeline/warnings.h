@@ -21,6 +21,9 @@ std::optional<std::string> pupilNote(const CalibrationResult& result, int camera
 /// About images and tags of one camera: skipped images, dropped tags, a border of another width.
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target);
 
+/// What makes a solution doubtful by itself: a solve without end, parameters that the views do not determine.
+std::vector<std::string> solutionWarnings(const calibration::Solution& solution);
+
 /// About a finished calibration: too little data, doubtful or undetermined parameters, values that Kalibr would not write.
 std::vector<std::string> resultWarnings(const CalibrationResult& result);
 

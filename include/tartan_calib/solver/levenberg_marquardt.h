@@ -19,6 +19,8 @@ struct Options {
   /// Converged once a Gauss-Newton step promises to lower the cost by less than the larger of these.
   double relative_tolerance = 1e-12;  ///< times the cost
   double absolute_tolerance = 0.0;
+  double initial_damping = 1e-6;  ///< of diag(H): close to Gauss-Newton, for starts that are usually good
+  double newton_damping = 1e-9;   ///< of diag(H): up to here a step counts as a Gauss-Newton step
   /// Part of the cost that a step may promise and not keep at the minimum, and that several iterations must gain to be worth
   /// others. In a valley that is bent as well as nearly flat the quadratic model promises without end what no step gains.
   double negligible_ratio = 1e-8;
