@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bag_index.h"
+#include "head_reader.h"
 #include "shared_bag.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/gray_image.h"
@@ -14,20 +15,9 @@
 namespace tartan_calib::ros {
 namespace {
 
-/// Enough for the head of any image: stamp, names of frame and encoding, size.
-constexpr std::size_t kHeadBytes = 4096;
-
 ImageRecord recordOf(const MessageHead& head, std::int64_t received_ns) {
   return {received_ns, static_cast<std::int64_t>(head.stamp.toNSec()), static_cast<int>(head.width),
           static_cast<int>(head.height), head.encoding};
-}
-
-template <class Head>
-MessageHead parseHead(std::vector<std::uint8_t> bytes) {
-  Head head;
-  ::ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ::ros::serialization::deserialize(stream, head);
-  return head.head;
 }
 
 ::ros::Time timeOf(std::int64_t stamp_ns) { return ::ros::Time().fromNSec(static_cast<std::uint64_t>(stamp_ns)); }
@@ -108,25 +98,13 @@ class ImageTopics {
   std::map<std::string, ImageTopic> topics_;
 };
 
-void readHeads(BagIndex& index, ImageTopics& images) {
-  for (const BagIndex::Message& message : index.messages()) {
-    const std::string& topic = index.topics().at(message.connection);
-    if (images.has(topic)) {
-      images.add(topic, message.received_ns, [&](bool is_compressed) {
-        const std::vector<std::uint8_t> bytes = index.beginning(message, kHeadBytes);
-        return is_compressed ? parseHead<CompressedHead>(bytes) : parseHead<ImageHead>(bytes);
-      });
-    }
-  }
-}
-
-/// Where chunks are compressed rosbag unpacks them, one after the other.
-void readHeadsByRosbag(const SharedBag& shared, ImageTopics& images) {
+void readHeads(const SharedBag& shared, BagIndex& index, ImageTopics& images) {
+  HeadReader heads(&index);
   rosbag::View view(shared.bag,
                     [&images](const rosbag::ConnectionInfo* connection) { return images.has(connection->topic); });
   for (const rosbag::MessageInstance& message : view) {
     images.add(message.getTopic(), static_cast<std::int64_t>(message.getTime().toNSec()),
-               [&message](bool is_compressed) { return readHead(message, is_compressed); });
+               [&](bool is_compressed_image) { return heads.read(message, is_compressed_image); });
   }
 }
 
@@ -157,13 +135,8 @@ BagContents listBag(const std::string& path) {
   const std::shared_ptr<SharedBag> shared = openShared(path);
   const std::map<std::string, std::string> types = typesByTopic(shared->bag);
   BagIndex index(path);
-  const auto is_compressed = [](const BagIndex::Message& message) { return message.is_compressed; };
   ImageTopics images(types);
-  if (std::any_of(index.messages().begin(), index.messages().end(), is_compressed)) {
-    readHeadsByRosbag(*shared, images);
-  } else {
-    readHeads(index, images);
-  }
+  readHeads(*shared, index, images);
   return {images.finish(shared), otherTopics(index, types)};
 }
 

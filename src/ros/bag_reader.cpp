@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "bag_index.h"
+#include "head_reader.h"
 #include "shared_bag.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/gray_image.h"
@@ -70,10 +73,10 @@ void checkEncoding(const TopicIndex& index, const MessageHead& head) {
 }
 
 /// Adds one message to the index of its topic.
-void addMessage(const rosbag::MessageInstance& message, TopicIndex& index) {
+void addMessage(const rosbag::MessageInstance& message, HeadReader& heads, TopicIndex& index) {
   MessageHead head;
   try {
-    head = readHead(message, index.is_compressed);
+    head = heads.read(message, index.is_compressed);
   } catch (const std::exception& error) {
     index.unreadable_reason = index.num_unreadable++ == 0 ? error.what() : index.unreadable_reason;
     return;
@@ -85,6 +88,15 @@ void addMessage(const rosbag::MessageInstance& message, TopicIndex& index) {
   index.messages.push_back(message);
 }
 
+/// Empty where the file has a structure that only rosbag knows.
+std::optional<BagIndex> indexOf(const std::string& path) {
+  try {
+    return BagIndex(path);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 /// One pass over the bag, in its own order, for all topics.
 void scan(const SharedBag& shared, std::map<std::string, TopicIndex>& indices) {
   std::vector<std::string> topics;
@@ -92,9 +104,11 @@ void scan(const SharedBag& shared, std::map<std::string, TopicIndex>& indices) {
   for (const auto& [topic, index] : indices) {
     topics.push_back(topic);
   }
+  std::optional<BagIndex> places = indexOf(shared.path);
+  HeadReader heads(places ? &*places : nullptr);
   rosbag::View view(shared.bag, rosbag::TopicQuery(topics));
   for (const rosbag::MessageInstance& message : view) {
-    addMessage(message, indices.at(message.getTopic()));
+    addMessage(message, heads, indices.at(message.getTopic()));
   }
   for (auto& [topic, index] : indices) {
     std::sort(index.stamp_message.begin(), index.stamp_message.end());

@@ -63,8 +63,4 @@ bool hasReadableEncoding(const MessageHead& head) {
   return std::all_of(head.encoding.begin(), head.encoding.end(), [](char letter) { return letter >= ' ' && letter <= '~'; });
 }
 
-MessageHead readHead(const rosbag::MessageInstance& message, bool is_compressed) {
-  return is_compressed ? message.instantiate<CompressedHead>()->head : message.instantiate<ImageHead>()->head;
-}
-
 }  // namespace tartan_calib::ros

@@ -38,7 +38,4 @@ bool isImageType(const std::string& type);
 /// False for the bytes of another type of message, which its place on a topic makes an image.
 bool hasReadableEncoding(const MessageHead& head);
 
-/// Throws where the message is damaged.
-MessageHead readHead(const rosbag::MessageInstance& message, bool is_compressed);
-
 }  // namespace tartan_calib::ros

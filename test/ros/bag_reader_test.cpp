@@ -74,6 +74,41 @@ TEST_F(Selection, RefusesWhatSelectsNothing) {
   EXPECT_NE(errorOf([&] { openBag(bag.path(), {kTopic}, options); }).find("positive"), std::string::npos);
 }
 
+/// How messages are stored: all received at one time or not, in chunks that are compressed or not.
+struct Storage {
+  std::int64_t received_step_ns;
+  rosbag::CompressionType compression;
+};
+
+class BagStorage : public ::testing::TestWithParam<Storage> {};
+
+INSTANTIATE_TEST_SUITE_P(BagReader, BagStorage,
+                         ::testing::Values(Storage{kMs, rosbag::compression::Uncompressed},
+                                           Storage{0, rosbag::compression::Uncompressed},
+                                           Storage{kMs, rosbag::compression::BZ2}, Storage{kMs, rosbag::compression::LZ4}));
+
+TEST_P(BagStorage, EveryStampHasItsOwnPixels) {
+  const BagFile file;
+  {
+    rosbag::Bag bag(file.path(), rosbag::bagmode::Write);
+    bag.setCompression(GetParam().compression);
+    std::int64_t received_ns = kStart;
+    for (const int value : {40, 0, 10, 30, 20}) {
+      ::ros::Time received;
+      received.fromNSec(static_cast<std::uint64_t>(received_ns += GetParam().received_step_ns));
+      bag.write(kTopic, received,
+                message(cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(value)), "mono8", kStart + value * kMs));
+    }
+  }
+  const std::vector<pipeline::StampedImage> images = readAll(file.path());
+  ASSERT_EQ(images.size(), 5U);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const int value = 10 * static_cast<int>(i);
+    EXPECT_EQ(images[i].stamp_ns, kStart + value * kMs);
+    EXPECT_EQ(images[i].load().at<std::uint8_t>(0, 0), value);
+  }
+}
+
 TEST(BagReader, CanBeReadAgain) {
   const BagFile bag;
   store<sensor_msgs::Image>(bag.path(), {message(grayRamp(), "mono8")});
