@@ -1,7 +1,10 @@
 #include "distortion_centre.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+
+#include "tartan_calib/solver/parallel.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -48,38 +51,42 @@ CentreFit refineAround(const std::vector<NormalView>& views, const CentreFit& ne
   return fit;
 }
 
+const CentreFit& bestOf(const CentreFit& guess, const std::vector<CentreFit>& fits) {
+  const auto best =
+      std::min_element(fits.begin(), fits.end(), [](const CentreFit& a, const CentreFit& b) { return a.cost < b.cost; });
+  return best->cost < guess.cost ? *best : guess;
+}
+
 /// The best of the guess and the 8 points around it.
-CentreFit bestOfGrid(const std::vector<NormalView>& views, const CentreFit& guess, double spacing) {
-  CentreFit best = guess;
+CentreFit bestOfGrid(const std::vector<NormalView>& views, const CentreFit& guess, double spacing, int num_threads) {
+  std::vector<Eigen::Vector2d> offsets;
   for (int row = -1; row <= 1; ++row) {
     for (int col = -1; col <= 1; ++col) {
-      if (row == 0 && col == 0) {
-        continue;
-      }
-      const CentreFit fit = searchAround(views, guess.centre + spacing * Eigen::Vector2d(col, row));
-      if (fit.cost < best.cost) {
-        best = fit;
+      if (row != 0 || col != 0) {
+        offsets.emplace_back(col, row);
       }
     }
   }
-  return best;
+  std::vector<CentreFit> fits(offsets.size());
+  solver::forEachItem(static_cast<int>(offsets.size()), num_threads,
+                      [&](std::size_t i) { fits[i] = searchAround(views, guess.centre + spacing * offsets[i]); });
+  return bestOf(guess, fits);
 }
 
 /// Pattern search: steps along the axes, halved where none helps, within `max_offset` of the guess.
-CentreFit descend(const std::vector<NormalView>& views, CentreFit best, const Eigen::Vector2d& guess, double max_offset) {
+CentreFit descend(const std::vector<NormalView>& views, CentreFit best, const Eigen::Vector2d& guess, double max_offset,
+                  int num_threads) {
+  const std::array<Eigen::Vector2d, 4> directions = {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, 1),
+                                                     Eigen::Vector2d(0, -1)};
   for (double step = 0.25 * max_offset; step > kSmallestStep;) {
-    CentreFit better = best;
-    for (const Eigen::Vector2d& direction :
-         {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)}) {
-      const Eigen::Vector2d centre = best.centre + step * direction;
-      if ((centre - guess).cwiseAbs().maxCoeff() > max_offset) {
-        continue;
+    std::vector<CentreFit> fits(directions.size(), best);
+    solver::forEachItem(static_cast<int>(directions.size()), num_threads, [&](std::size_t i) {
+      const Eigen::Vector2d centre = best.centre + step * directions[i];
+      if ((centre - guess).cwiseAbs().maxCoeff() <= max_offset) {
+        fits[i] = refineAround(views, best, centre);
       }
-      const CentreFit fit = refineAround(views, best, centre);
-      if (fit.cost < better.cost) {
-        better = fit;
-      }
-    }
+    });
+    const CentreFit& better = bestOf(best, fits);
     if (better.cost < best.cost) {
       best = better;
     } else {
@@ -92,9 +99,10 @@ CentreFit descend(const std::vector<NormalView>& views, CentreFit best, const Ei
 }  // namespace
 
 std::vector<Eigen::Vector2d> findDistortionCentres(const std::vector<NormalView>& views, const Eigen::Vector2d& guess,
-                                                   double max_offset) {
+                                                   double max_offset, int num_threads) {
   const CentreFit start = searchAround(views, guess);
-  const CentreFit best = descend(views, bestOfGrid(views, start, 2.0 / 3.0 * max_offset), guess, max_offset);
+  const CentreFit nearby = bestOfGrid(views, start, 2.0 / 3.0 * max_offset, num_threads);
+  const CentreFit best = descend(views, nearby, guess, max_offset, num_threads);
   if (best.cost < kClearlyBetter * start.cost) {
     return {best.centre, guess};
   }

@@ -171,7 +171,7 @@ std::vector<CameraView> usableViews(const std::vector<CameraView>& views) {
 /// The first lens that convinces, or the best.
 std::pair<Candidate, LensGuess> findCamera(const CameraSpec& spec, const std::vector<Eigen::Vector3d>& target_points,
                                            const std::vector<CameraView>& views) {
-  const ImageInfo image{spec.width, spec.height, spec.focal_hint_px};
+  const ImageInfo image{spec.width, spec.height, spec.focal_hint_px, spec.num_threads};
   std::pair<Candidate, LensGuess> best;
   for (const LensGuess& lens : searchLens(image, target_points, spread(views, kMaxSearchViews))) {
     const Candidate candidate = tryLens(spec, lens, target_points, spread(views, kMaxSolveViews));

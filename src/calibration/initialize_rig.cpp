@@ -73,12 +73,9 @@ Problem initializeRig(const std::vector<camera::Camera>& cameras, const std::vec
     return options.known_poses.empty() ? std::optional<Rigid3>() : options.known_poses.at(v);
   };
   std::vector<ViewPoses> poses(views.size());
-  solver::forEachChunk(static_cast<int>(views.size()), options.num_threads, [&](const solver::Chunk& chunk) {
-    for (int i = chunk.begin; i < chunk.end; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (!known_pose(at)) {
-        poses[at] = posesOf(cameras, target_points, views[at]);
-      }
+  solver::forEachItem(static_cast<int>(views.size()), options.num_threads, [&](std::size_t v) {
+    if (!known_pose(v)) {
+      poses[v] = posesOf(cameras, target_points, views[v]);
     }
   });
   if (!known_rig) {

@@ -8,6 +8,7 @@
 #include "radial_pose.h"
 #include "radial_profile.h"
 #include "spread.h"
+#include "tartan_calib/solver/parallel.h"
 
 namespace tartan_calib::calibration {
 namespace {
@@ -89,13 +90,19 @@ std::vector<LensGuess> searchLens(const ImageInfo& image, const std::vector<Eige
   if (image.focal_hint_px) {
     focal_hint = *image.focal_hint_px / units.image_px;
   }
-  std::vector<std::pair<double, LensGuess>> guesses;
-  for (const Eigen::Vector2d& centre :
-       findDistortionCentres(spread(normal_views, kMaxCentreViews), Eigen::Vector2d::Zero(), kMaxCentreOffset)) {
-    const std::vector<ProfileView> profile_views = profileViews(normal_views, centre);
+  const std::vector<Eigen::Vector2d> centres = findDistortionCentres(
+      spread(normal_views, kMaxCentreViews), Eigen::Vector2d::Zero(), kMaxCentreOffset, image.num_threads);
+  std::vector<std::vector<std::pair<double, LensGuess>>> guesses_by_centre(centres.size());
+  solver::forEachItem(static_cast<int>(centres.size()), image.num_threads, [&](std::size_t i) {
+    const std::vector<ProfileView> profile_views = profileViews(normal_views, centres[i]);
     for (const ScoredProfile& scored : searchProfiles(profile_views, focal_hint, kMaxGuesses)) {
-      guesses.emplace_back(scored.score, lensGuess(scored.profile, centre, maxRadius(profile_views), units));
+      guesses_by_centre[i].emplace_back(scored.score,
+                                        lensGuess(scored.profile, centres[i], maxRadius(profile_views), units));
     }
+  });
+  std::vector<std::pair<double, LensGuess>> guesses;
+  for (const auto& of_centre : guesses_by_centre) {
+    guesses.insert(guesses.end(), of_centre.begin(), of_centre.end());
   }
   std::stable_sort(guesses.begin(), guesses.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<LensGuess> result;

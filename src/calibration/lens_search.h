@@ -14,6 +14,7 @@ struct ImageInfo {
   int width = 0;
   int height = 0;
   std::optional<double> focal_hint_px;
+  int num_threads = 0;  ///< of the search; 0: all cores. The result has the same bits for every value
 };
 
 /// A radially symmetric lens, as samples that any model can be fitted to.

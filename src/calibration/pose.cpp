@@ -268,12 +268,8 @@ std::vector<std::optional<Rigid3>> estimatePoses(const camera::Camera& camera,
                                                  const std::vector<Eigen::Vector3d>& target_points,
                                                  const std::vector<observation::CameraView>& images, int num_threads) {
   std::vector<std::optional<Rigid3>> poses(images.size());
-  solver::forEachChunk(static_cast<int>(images.size()), num_threads, [&](const solver::Chunk& chunk) {
-    for (int i = chunk.begin; i < chunk.end; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      poses[at] = estimatePose(camera, target_points, images[at].corners);
-    }
-  });
+  solver::forEachItem(static_cast<int>(images.size()), num_threads,
+                      [&](std::size_t i) { poses[i] = estimatePose(camera, target_points, images[i].corners); });
   return poses;
 }
 

@@ -48,4 +48,12 @@ void forEachChunk(int num_items, int num_threads, const std::function<void(const
   }
 }
 
+void forEachItem(int num_items, int num_threads, const std::function<void(std::size_t)>& work) {
+  forEachChunk(num_items, num_threads, [&work](const Chunk& chunk) {
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      work(static_cast<std::size_t>(i));
+    }
+  });
+}
+
 }  // namespace tartan_calib::solver

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 
 namespace tartan_calib::solver {
@@ -16,5 +17,8 @@ struct Chunk {
 
 /// Calls `work` once per chunk of [0, num_items), from up to num_threads threads (0: all cores). Rethrows what it throws.
 void forEachChunk(int num_items, int num_threads, const std::function<void(const Chunk&)>& work);
+
+/// The same, once per item, for work whose results are kept by item.
+void forEachItem(int num_items, int num_threads, const std::function<void(std::size_t)>& work);
 
 }  // namespace tartan_calib::solver
