@@ -32,13 +32,13 @@ constexpr Accuracy kRough = {1e-4, 1e-4, 1e-6, 1e-6};
 
 /// Of the last stage: the next step would move no parameter by more than a thousandth of its stdev.
 Accuracy finalAccuracy(int num_corners) {
-  constexpr double kFinal_stdevs = 1e-3;
+  constexpr double kFinalStdevs = 1e-3;
   // Steps that fail although they promise to move parameters by so much: ds-none has a valley so flat and bent where few
   // views are narrow. There the place in the valley is of no consequence for the image.
-  constexpr double kNegligible_stdevs = 0.05;
+  constexpr double kNegligibleStdevs = 0.05;
   // With H the normal matrix and sigma^2 = 2 cost / n, a step d of e stdevs promises d'Hd / 2 = e^2 sigma^2 / 2.
   const double ratio_per_stdev2 = 1.0 / (2.0 * num_corners);
-  return {kFinal_stdevs * kFinal_stdevs * ratio_per_stdev2, kNegligible_stdevs * kNegligible_stdevs * ratio_per_stdev2, 1e-8,
+  return {kFinalStdevs * kFinalStdevs * ratio_per_stdev2, kNegligibleStdevs * kNegligibleStdevs * ratio_per_stdev2, 1e-8,
           1e-9};
 }
 
