@@ -48,6 +48,11 @@ def verdict_lines(report):
     return lines + [("#404040", f"note: {warning}") for warning in report.warnings]
 
 
+def small(value):
+    """A positive number with three decimals that is never said to be nothing."""
+    return f"{value:.3f}" if value >= 0.0005 else "< 0.001"
+
+
 def add_summary(figure, report, place):
     """A table of the cameras; `place` as left, bottom, width, height."""
     columns = ["camera", "model", "views", "corners", "rms (px)", "median (px)", "reach of corners / image (deg)",
@@ -58,8 +63,8 @@ def add_summary(figure, report, place):
         difference = camera.median_difference_px
         rows.append([camera.name, camera.model, statistics["views"], statistics["corners"], f"{statistics['rms_px']:.3f}",
                      f"{statistics['median_px']:.3f}", f"{camera.max_polar_deg:.0f} / {camera.reach_deg:.0f}",
-                     f"{100 * camera.focal_stdev_ratio:.3f}", f"{camera.median_stdev_px:.3f}",
-                     "not measured" if difference is None else f"{difference:.3f}"])
+                     small(100 * camera.focal_stdev_ratio), small(camera.median_stdev_px),
+                     "not measured" if difference is None else small(difference)])
     axes = figure.add_axes(place)
     axes.axis("off")
     table = axes.table(rows, colLabels=columns, cellLoc="center", bbox=[0.0, 0.0, 1.0, 1.0],
