@@ -80,8 +80,7 @@ class ImageRecovery {
       const bool is_calibrated_size = gray.cols == camera_.width && gray.rows == camera_.height;
       view.corners = is_calibrated_size ? recoverFrom(gray, view) : std::vector<Corner>();
     } catch (const InputError&) {
-      // Counted when the images were read for the first time.
-      view.corners.clear();
+      // Counted when the images were read for the first time; one that has become unreadable keeps its corners.
     }
     if (map) {
       const int num_predicted = countPredicted(camera_, *map, start_.target_points);

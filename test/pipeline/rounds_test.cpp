@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
@@ -112,14 +113,14 @@ TEST(RoundsTest, AnImageWithTooFewTagsForRoundZeroTakesPartAfterwards) {
   EXPECT_TRUE(takesPart(run(1), kLeavingImage));
 }
 
-/// The recording, of which one image shows nothing from the second pass on.
-CameraStream streamThatLoses(std::size_t image_index) {
+/// The recording whose images change when they are read again.
+CameraStream streamThatChanges(const std::function<cv::Mat(std::size_t index, const cv::Mat& image)>& change) {
   CameraStream stream = wideStream();
-  stream.open = [image_index, open = stream.open, num_passes = 0]() mutable -> ImageSource {
-    return [image_index, is_lost = num_passes++ > 0, source = open(), next = std::size_t{0}]() mutable {
+  stream.open = [change, open = stream.open, num_passes = 0]() mutable -> ImageSource {
+    return [change, is_again = num_passes++ > 0, source = open(), next = std::size_t{0}]() mutable {
       std::optional<StampedImage> image = source();
-      if (is_lost && next++ == image_index) {
-        image->load = [] { return cv::Mat(640, 640, CV_8UC1, cv::Scalar(128)); };
+      if (image && is_again) {
+        image->load = [change, index = next++, load = image->load] { return change(index, load()); };
       }
       return image;
     };
@@ -134,13 +135,45 @@ TEST(RoundsTest, CornersThatAreNotFoundAgainAreKeptWhereTheyFit) {
   options.max_rounds = 0;
   options.min_tags = kWideMinTags;
   const auto num_corners = [&] {
-    const CalibrationResult result = calibrate({streamThatLoses(kLostImage)}, target::AprilGrid(), options);
+    const auto hide = [](std::size_t index, const cv::Mat& image) {
+      return index == kLostImage ? cv::Mat(image.size(), CV_8UC1, cv::Scalar(128)) : image;
+    };
+    const CalibrationResult result = calibrate({streamThatChanges(hide)}, target::AprilGrid(), options);
     return observedCorners(result).front().images[kLostImage].corners.size();
   };
   const std::size_t num_before = num_corners();
   EXPECT_GT(num_before, 100U);
   options.max_rounds = 1;
   EXPECT_EQ(num_corners(), num_before);
+}
+
+TEST(RoundsTest, ImagesThatHaveBecomeUnreadableKeepTheirCorners) {
+  CalibrateOptions options;
+  options.models = {"ds-none"};
+  options.max_rounds = 1;
+  options.min_tags = kWideMinTags;
+  const auto fail = [](std::size_t /*index*/, const cv::Mat& /*image*/) -> cv::Mat { throw InputError("no such disk"); };
+  const CalibrationResult result = calibrate({streamThatChanges(fail)}, target::AprilGrid(), options);
+  ASSERT_EQ(result.rounds.size(), 1U);
+  EXPECT_EQ(result.rounds[0].lost, 0);
+  EXPECT_EQ(result.rounds[0].gained, 0);
+}
+
+TEST(RoundsTest, ARoundThatLeadsToNoCalibrationIsGivenUp) {
+  CalibrateOptions options;
+  options.models = {"ds-none"};
+  options.max_rounds = 3;
+  options.min_tags = kWideMinTags;
+  const CalibrationResult before = run(0);
+  const auto cut = [](std::size_t /*index*/, const cv::Mat& image) { return image.colRange(0, image.cols / 2).clone(); };
+  const CalibrationResult result = calibrate({streamThatChanges(cut)}, target::AprilGrid(), options);
+  EXPECT_TRUE(result.rounds.empty());
+  EXPECT_EQ(camera::parameters(result.solution.rig.cameras[0].camera.model),
+            camera::parameters(before.solution.rig.cameras[0].camera.model));
+  EXPECT_EQ(result.solution.counts[0].used, before.solution.counts[0].used);
+  EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
+    return warning.find("round 1 did not end with a calibration, that of the round before is kept") == 0;
+  }));
 }
 
 TEST(RoundsTest, CornersKnowTheRoundThatSawThemFirst) {
