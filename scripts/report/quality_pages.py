@@ -27,7 +27,7 @@ def coverage_page(report, camera):
 
     title = f"{camera.name}: coverage"
     figure = image_page(title, "Missed: the solution expects the corner in the image, but nothing was found there: hidden, blurred, "
-                               "too small, or outside of the lens's image circle. Dashed: the farthest corner, at "
+                               "too small, or outside of the lens's image circle. Dashed: the farthest used corner, at "
                                f"{camera.max_polar_deg:.0f} degrees.", camera, columns=3)
     left, middle, right = panels(figure, 3, wspace=0.28)[0]
     most = max(2.0, shared_max(report, lambda other: np.maximum(coverage(other.found, other), coverage(other.missed, other))))
@@ -68,7 +68,7 @@ def vectors_page(report, camera):
             "means over cells: what is left there the lens model or the board cannot follow.")
     figure = image_page(title, note, camera, has_colour_bar=False)
     step = every_nth(camera)
-    for axes, arrows_of, what in ((panels(figure)[0, 0], some_arrows, f"every {step}th corner" if step > 1 else "all corners"),
+    for axes, arrows_of, what in ((panels(figure)[0, 0], some_arrows, f"every {ordinal(step)} corner" if step > 1 else "all corners"),
                                   (figure.axes[1], cell_means, "means of cells")):
         u, v, du, dv = arrows_of(camera)
         factor = min(magnification(np.hypot(*arrows_of(other)[2:]), 0.04 * other.width) for other in report.cameras)
@@ -79,6 +79,11 @@ def vectors_page(report, camera):
 
 def every_nth(camera):
     return max(1, camera.used.size // MAX_ARROWS)
+
+
+def ordinal(number):
+    ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{ending}"
 
 
 def some_arrows(camera):
@@ -173,7 +178,7 @@ def rms_by_view(camera):
 def curves_page(report):
     title = "Distortion curves: angle to radius"
     figure = page(title, "Mean over all directions. Thick as far as there are corners, thin where the model is extrapolated; the "
-                         "mark is the farthest corner.")
+                         "mark is the farthest used corner.")
     left, right = panels(figure)[0]
     for index, camera in enumerate(report.cameras):
         angle, radius = camera.curve.angle_deg, camera.curve.radius_px
@@ -271,7 +276,7 @@ def maps_page(report, camera):
     has_red = any(is_crossed(shown_values(camera, column), FAIR_PX) for column in columns)
     note = ("Left: standard deviation in the worst direction that the corners' noise leaves in the projection. Right: how far "
             "calibrations of the odd and of the even views are apart. Much more than noise lets expect is blur, rolling shutter, or a "
-            f"model too simple. {'Red: 0.1 px. ' if has_red else ''}Dashed: the farthest corner. White: no light or no model.")
+            f"model too simple. {'Red: 0.1 px. ' if has_red else ''}Dashed: the farthest used corner. White: no light or no model.")
     figure = image_page(title, note, camera)
     left, right = panels(figure)[0]
     norm = LogNorm(*map_limits(report), clip=True)
