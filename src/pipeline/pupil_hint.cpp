@@ -1,7 +1,7 @@
 #include "pupil_hint.h"
 
-#include <algorithm>
-
+#include "tartan_calib/calibration/statistics.h"
+#include "tartan_calib/pipeline/richer_models.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::pipeline {
@@ -11,19 +11,6 @@ namespace {
 constexpr double kLargeSigma_px = 0.2;
 /// A moving pupil that leaves more than this share of the residuals is not what is wrong.
 constexpr double kExplainedShare = 0.6;
-
-/// Where the model is too simple a moving pupil makes up for it in part, so both causes are possible. The models that follow
-/// nearly every lens, but for those that were used.
-std::string modelsToTry(const calibration::Rig& rig) {
-  std::vector<std::string> models = {"ds-none", "pinhole-equi"};
-  for (const calibration::RigCamera& camera : rig.cameras) {
-    const auto used = std::find(models.begin(), models.end(), camera::modelName(camera.camera.model));
-    if (models.size() > 1 && used != models.end()) {
-      models.erase(used);
-    }
-  }
-  return joined(models, " or ");
-}
 
 }  // namespace
 
@@ -39,11 +26,20 @@ std::optional<std::string> pupilHint(const calibration::Solution& solution, cons
   if (trial.status != calibration::SolveStatus::kConverged || trial.sigma_px > kExplainedShare * solution.sigma_px) {
     return std::nullopt;
   }
-  return format(
-      "residuals fall from %.2f to %.2f px when the entrance pupil of the lens may move: this model cannot follow the lens "
-      "(try %s), or the board was so near that no central model holds (record it from farther away, or add "
-      "--estimate-pupil-shift for a model of far scenes)",
-      solution.sigma_px, trial.sigma_px, modelsToTry(solution.rig).c_str());
+  const std::vector<calibration::CameraStatistics> before = calibration::residualStatistics(solution, target_points);
+  const std::vector<calibration::CameraStatistics> after = calibration::residualStatistics(trial, target_points);
+  std::size_t most = 0;  // camera whose residuals fall by most
+  for (std::size_t i = 1; i < before.size(); ++i) {
+    most = before[i].rms_px - after[i].rms_px > before[most].rms_px - after[most].rms_px ? i : most;
+  }
+  // Where the model is too simple a moving pupil makes up for it in part, so both causes are possible.
+  return cameraName(most) +
+         format(
+             ": residuals fall from rms %.3f to %.3f px when the entrance pupil of the lens may move: this model cannot "
+             "follow the lens (%s), or the board was so near that no central model holds (record it from farther away, "
+             "or add --estimate-pupil-shift for a model of far scenes)",
+             before[most].rms_px, after[most].rms_px,
+             richerModels(camera::modelName(solution.rig.cameras[most].camera.model)).c_str());
 }
 
 }  // namespace tartan_calib::pipeline

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tartan_calib/pipeline/richer_models.h"
 #include "tartan_calib/pipeline/warnings.h"
 #include "tartan_calib/text.h"
 
@@ -38,26 +39,6 @@ constexpr double kMaxDifference_ratio = 4.0;
 constexpr double kSignificance = 6.0;  ///< in stdevs
 constexpr double kMinBiasOfRms = 0.3;  ///< a pattern smaller than this share of the residuals hardly moves a model
 constexpr double kMinDelay_ns = 0.2e6;
-
-/// Models to try for a lens that the given one cannot follow.
-std::string richerModels(const std::string& model) {
-  if (model == "pinhole-none") {
-    return "try pinhole-radtan";
-  }
-  if (model == "pinhole-radtan" || model == "pinhole-fov") {
-    return "try pinhole-equi or ds-none";
-  }
-  if (model == "pinhole-equi") {
-    return "try omni-radtan, and look for blur at the edge";
-  }
-  if (model == "omni-radtan") {
-    return "try pinhole-equi, and look for blur at the edge";
-  }
-  if (model == "ds-none") {
-    return "try pinhole-equi or omni-radtan";
-  }
-  return "try ds-none, pinhole-equi or omni-radtan";
-}
 
 /// Collects the reasons that one camera gives.
 class CameraJudge {
@@ -160,7 +141,7 @@ class CameraJudge {
         format(
             "residuals follow the angle (%.2f px %s on average at %.0f to %.0f degrees): %s is too simple for this lens, %s",
             size(*worst), worst->mean_px > 0.0 ? "outwards" : "inwards", worst->from_rad * kDegreesPerRadian,
-            worst->to_rad * kDegreesPerRadian, model.c_str(), richerModels(model).c_str()));
+            worst->to_rad * kDegreesPerRadian, model.c_str(), pipeline::richerModels(model).c_str()));
   }
 
   void checkHalves() {
