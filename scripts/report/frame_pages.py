@@ -53,8 +53,8 @@ def small(value):
     return f"{value:.3f}" if value >= 0.0005 else "< 0.001"
 
 
-def add_summary(figure, report, place):
-    """A table of the cameras; `place` as left, bottom, width, height."""
+def summary(report):
+    """Headings and rows of a table of the cameras."""
     columns = ["camera", "model", "views", "corners", "rms (px)", "median (px)", "reach of corners / image (deg)",
                "focal length\nuncertain to (%)", "projection\nuncertain to (px)", "odd against\neven (px)"]
     rows = []
@@ -65,6 +65,12 @@ def add_summary(figure, report, place):
                      f"{statistics['median_px']:.3f}", f"{camera.max_polar_deg:.0f} / {camera.reach_deg:.0f}",
                      small(100 * camera.focal_stdev_ratio), small(camera.median_stdev_px),
                      "not measured" if difference is None else small(difference)])
+    return columns, rows
+
+
+def add_summary(figure, report, place):
+    """The table of the cameras; `place` as left, bottom, width, height."""
+    columns, rows = summary(report)
     axes = figure.add_axes(place)
     axes.axis("off")
     table = axes.table(rows, colLabels=columns, cellLoc="center", bbox=[0.0, 0.0, 1.0, 1.0],

@@ -7,6 +7,7 @@ import struct
 import zlib
 from pathlib import Path
 
+import frame_pages
 import matplotlib.pyplot as plt
 import numpy as np
 import pdf_report
@@ -54,6 +55,15 @@ def verdict_html(report):
     return f'<p id="verdict" class="{verdict["grade"]}">Verdict: {verdict["grade"]}</p>\n<ul>{"".join(lines)}</ul>'
 
 
+def summary_html(report):
+    def line(kind, texts):
+        return f"<tr>{''.join(f'<{kind}>{html.escape(str(text))}</{kind}>' for text in texts)}</tr>"
+
+    columns, rows = frame_pages.summary(report)
+    body = "".join(line("td", row) for row in rows)
+    return f'<div class="wide"><table id="summary"><thead>{line("th", columns)}</thead><tbody>{body}</tbody></table></div>'
+
+
 def rounded(values, digits):
     """Numbers as JSON with few digits; what is not finite becomes null."""
     rounded_values = np.round(np.asarray(values, dtype=float), digits)
@@ -97,7 +107,7 @@ def write(report):
     data = json.dumps([camera_data(report, camera) for camera in report.cameras], separators=(",", ":"))
     page = TEMPLATE.read_text()
     for key, value in (("TITLE", html.escape(f"Calibration of {report.name}")), ("VERDICT", verdict_html(report)),
-                       ("RESULTS", html.escape(report.results_text)), ("PAGES", pages_html(report)),
-                       ("DATA", data.replace("</", "<\\/"))):
+                       ("SUMMARY", summary_html(report)), ("RESULTS", html.escape(report.results_text)),
+                       ("PAGES", pages_html(report)), ("DATA", data.replace("</", "<\\/"))):
         page = page.replace(f"<!--{key}-->", value)
     (report.folder / "report.html").write_text(page)

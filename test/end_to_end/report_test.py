@@ -1,10 +1,13 @@
 """The report is written beside the other files, holds what it should, and never costs a result."""
 
+import html
 import os
 import re
 import shutil
 import unittest
 from pathlib import Path
+
+import yaml
 
 from programs import PROGRAMS, Recordings, assert_stopped, calibrate, interrupt_after, run_command, start, start_on_terminal
 
@@ -52,6 +55,19 @@ class ReportOfARig(unittest.TestCase):
         verdict = re.search(r"Verdict: \w+", self.finished.stdout).group()
         self.assertIn(verdict, self.pdf_text())
         self.assertIn(verdict, self.page)
+
+    def test_pdf_and_page_have_the_same_table_of_the_cameras(self):
+        table = re.search(r'<table id="summary">(.*?)</table>', self.page, re.DOTALL).group(1)
+        headings = re.findall("<th>(.*?)</th>", table, re.DOTALL)
+        rows = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(<td>.*?)</tr>", table)]
+        self.assertEqual([row[:2] for row in rows], [["cam0", "ds-none"], ["cam1", "ds-none"]])
+        text = " ".join(self.pdf_text().split())
+        for row in rows:
+            self.assertEqual(len(row), len(headings))
+            self.assertIn(html.unescape(" ".join(row)), text)
+        record = yaml.safe_load((self.recordings.path / "rig-calibration.yaml").read_text())
+        for index, row in enumerate(rows):
+            self.assertEqual(row[headings.index("rms (px)")], f"{record['cameras'][f'cam{index}']['residuals']['rms_px']:.3f}")
 
     def test_page_needs_no_other_file(self):
         self.assertEqual(re.findall(r"""(?:src|href)=["']?(?!data:)[^"'>]+""", self.page), [])
