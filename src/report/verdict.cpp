@@ -102,16 +102,19 @@ class CameraJudge {
     add(kFocalStdev_ratio, analysis_.focal_stdev_ratio,
         format("views too similar: focal length uncertain to %.1f %%; tilt the board to 45 degrees, hold it near and far",
                100.0 * analysis_.focal_stdev_ratio));
-    add(kStdev_px, analysis_.median_stdev_px,
-        format(
-            "too little data: the projection is uncertain to %.1f px (median over the image); record more views, close up",
-            analysis_.median_stdev_px));
+    // The covariance grows with the residuals, so that of a model that cannot follow the lens need not be the views' doing.
+    if (pattern() == nullptr || analysis_.median_stdev_px > statistics_.rms_px) {
+      add(kStdev_px, analysis_.median_stdev_px,
+          format("too little data: the projection is uncertain to %.1f px (median over the image); record more views, close "
+                 "up",
+                 analysis_.median_stdev_px));
+    }
   }
 
   void checkResiduals() {
     add(kRms_px, statistics_.rms_px,
-        format("large residuals (rms %.2f px): look for motion blur, wrong sizes in the target file, a bent board, or a "
-               "rolling shutter",
+        format("large residuals (rms %.2f px): look for motion blur, wrong sizes in the target file, a bent board, a "
+               "rolling shutter, or a model that cannot follow the lens",
                statistics_.rms_px));
     const int rejected = counts_.outliers + counts_.unprojectable + counts_.unsupported;
     const double ratio = static_cast<double>(rejected) / std::max(1, rejected + counts_.used);
@@ -122,26 +125,33 @@ class CameraJudge {
                result_.cameras.size() > 1 ? ", and check the cameras' sync (inspect_bag)" : ""));
   }
 
-  /// Residuals that point the same way at the same angle are no noise: the model cannot follow the lens.
-  void checkPattern() {
+  /// The largest of the residuals that point the same way at the same angle, which are no noise: the model cannot follow the
+  /// lens. Null where there are none.
+  const RadialBias* pattern() const {
     const auto size = [](const RadialBias& bias) { return std::abs(bias.mean_px); };
     const RadialBias* worst = nullptr;
     for (const RadialBias& bias : analysis_.radial_biases) {
       const bool is_significant = bias.num_images >= kTooFewViews && size(bias) > kSignificance * bias.stdev_px &&
-                                  size(bias) > kMinBiasOfRms * statistics_.rms_px;
+                                  size(bias) > kMinBiasOfRms * statistics_.rms_px && size(bias) > kBias_px.usable;
       if (is_significant && (worst == nullptr || size(bias) > size(*worst))) {
         worst = &bias;
       }
     }
-    if (worst == nullptr) {
+    return worst;
+  }
+
+  void checkPattern() {
+    const RadialBias* bias = pattern();
+    if (bias == nullptr) {
       return;
     }
+    const double size_px = std::abs(bias->mean_px);
     const std::string model = camera::modelName(camera_.model);
-    add(kBias_px, size(*worst),
+    add(kBias_px, size_px,
         format(
             "residuals follow the angle (%.2f px %s on average at %.0f to %.0f degrees): %s is too simple for this lens, %s",
-            size(*worst), worst->mean_px > 0.0 ? "outwards" : "inwards", worst->from_rad * kDegreesPerRadian,
-            worst->to_rad * kDegreesPerRadian, model.c_str(), pipeline::richerModels(model).c_str()));
+            size_px, bias->mean_px > 0.0 ? "outwards" : "inwards", bias->from_rad * kDegreesPerRadian,
+            bias->to_rad * kDegreesPerRadian, model.c_str(), pipeline::richerModels(model).c_str()));
   }
 
   void checkHalves() {

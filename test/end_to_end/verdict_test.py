@@ -158,6 +158,12 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertEqual((start, end), (90.0, 100.0))
         self.assertFalse([text for text in verdict[1] if "cam1" in text], verdict)
 
+    def test_lens_that_is_far_from_the_model(self):
+        verdict = self.verdict(self.rig, ["pinhole-radtan", "ds-none"])
+        self.assertEqual(verdict[0], "repeat")
+        self.reason(verdict, r"repeat: cam0: large residuals \(rms ([\d.]+) px\): .*, or a model that cannot follow the lens")
+        self.reason(verdict, r"repeat: cam0: residuals follow the angle .* pinhole-radtan is too simple for this lens, try pinhole-equi")
+
     def test_camera_that_changed_between_views(self):
         other = messages(self.recordings.simulate("other", *PINHOLE, "--seed", 2))
         mixed = [pair[index % 2] for index, pair in enumerate(zip(messages(self.pinhole), other))]

@@ -114,6 +114,20 @@ TEST(VerdictTest, ALensThatTheModelCannotFollowAsksForARicherOne) {
   }
 }
 
+TEST(VerdictTest, UncertaintyThatComesFromTheModelAsksForNoMoreViews) {
+  pipeline::CalibrationResult result = solved(sceneOf(pinhole()));
+  Analysis analysis = analysed(result);
+  const auto says_more_views = [&](double stdev_px, double bias_px) {
+    analysis.cameras[0].median_stdev_px = stdev_px;
+    analysis.cameras[0].radial_biases = {{0.5, 0.7, 20, bias_px, 0.01}};
+    result.cameras[0].statistics.rms_px = 1.0;
+    return textOf(judge(result, analysis)).find("too little data") != std::string::npos;
+  };
+  EXPECT_TRUE(says_more_views(0.5, 0.0));
+  EXPECT_FALSE(says_more_views(0.5, 0.6));
+  EXPECT_TRUE(says_more_views(1.5, 0.6));  // larger than the residuals
+}
+
 TEST(VerdictTest, HalvesThatDisagreePointToACameraThatChanged) {
   test_support::SceneOptions options;
   test_support::Scene scene = test_support::simulateScene(pinhole(), options);
