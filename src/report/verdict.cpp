@@ -33,6 +33,11 @@ constexpr int kFewViews = 10;
 constexpr int kTooFewViews = 4;
 constexpr int kFewSharedViews = 5;
 
+/// From how many rejected corners on beyond the farthest used one, and from which share of all rejected ones, the board was
+/// there and the model is to blame: single wrong corners are anywhere, those of blurred views all over the image.
+constexpr int kManyBeyond = 20;
+constexpr double kManyBeyond_ratio = 0.2;
+
 /// Two calibrations differ by about the stdev that their uncertainties leave. Beyond this many times that, something else
 /// than noise is at work.
 constexpr double kMaxDifference_ratio = 4.0;
@@ -84,12 +89,33 @@ class CameraJudge {
   }
 
   void checkReach() {
+    const double end_deg = statistics_.max_polar_angle_rad * kDegreesPerRadian;
+    const double percent = 100.0 * analysis_.extrapolated_ratio;
+    const double reach_deg = analysis_.reach_rad * kDegreesPerRadian;
+    const int num_beyond = rejectedBeyondReach();
+    if (num_beyond >= std::max<double>(kManyBeyond, kManyBeyond_ratio * numRejected())) {
+      const std::string model = camera::modelName(camera_.model);
+      add(kExtrapolated_ratio, analysis_.extrapolated_ratio,
+          format("all %d corners beyond %.0f degrees from the axis were rejected, where %.0f %% of the image lies (to %.0f "
+                 "degrees): %s does not follow the lens there, %s",
+                 num_beyond, end_deg, percent, reach_deg, model.c_str(), pipeline::richerModels(model).c_str()));
+      return;
+    }
     add(kExtrapolated_ratio, analysis_.extrapolated_ratio,
         format("no corner beyond %.0f degrees from the axis, where %.0f %% of the image lies (to %.0f degrees): the edge is "
                "extrapolated; hold the board there",
-               statistics_.max_polar_angle_rad * kDegreesPerRadian, 100.0 * analysis_.extrapolated_ratio,
-               analysis_.reach_rad * kDegreesPerRadian));
+               end_deg, percent, reach_deg));
   }
+
+  /// Corners farther from the axis than all used ones, or where the model has no ray.
+  int rejectedBeyondReach() const {
+    const std::vector<FoundCorner>& found = analysis_.corners.found;
+    return static_cast<int>(std::count_if(found.begin(), found.end(), [this](const FoundCorner& corner) {
+      return !corner.used && (!corner.polar_rad || *corner.polar_rad > statistics_.max_polar_angle_rad);
+    }));
+  }
+
+  int numRejected() const { return counts_.outliers + counts_.unprojectable + counts_.unsupported; }
 
   void checkRegions() {
     if (!analysis_.empty_regions.empty()) {
@@ -116,8 +142,7 @@ class CameraJudge {
         format("large residuals (rms %.2f px): look for motion blur, wrong sizes in the target file, a bent board, a "
                "rolling shutter, or a model that cannot follow the lens",
                statistics_.rms_px));
-    const int rejected = counts_.outliers + counts_.unprojectable + counts_.unsupported;
-    const double ratio = static_cast<double>(rejected) / std::max(1, rejected + counts_.used);
+    const double ratio = static_cast<double>(numRejected()) / std::max(1, numRejected() + counts_.used);
     add(kRejected_ratio, ratio,
         format("%.0f %% of the corners were rejected (%d outliers, %d that the model cannot project): look at the worst "
                "frames%s",

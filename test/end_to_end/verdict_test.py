@@ -94,6 +94,17 @@ class VerdictOnRenderedRecordings(unittest.TestCase):
         self.assertAlmostEqual(reach, 95.0, delta=2.0)  # of a lens of 190 degrees
         self.assertAlmostEqual(share, share_beyond(end + 2.0), delta=3.0)  # 2 degrees count as reached
 
+    def test_rim_whose_corners_the_model_cannot_follow(self):
+        bag = self.recordings.simulate("rim", "--lens", "fisheye190", "--resolution", "640x512", "--views", 24)
+        verdict = self.verdict(bag, ["omni-none"])
+        rejected, end, reach = self.reason(verdict, r"usable: cam0: all (\d+) corners beyond (\d+) degrees .* were rejected, where .* "
+                                                    r"\(to (\d+) degrees\): omni-none does not follow the lens there, try ds-none, ")
+        record = (self.recordings.path / "rim-calibration.yaml").read_text()
+        self.assertAlmostEqual(end, float(re.search(r"max_polar_angle_deg: ([\d.]+)", record)[1]), delta=0.51)
+        self.assertLessEqual(rejected, int(re.search(r"outliers: (\d+)", record)[1]))
+        self.assertGreater(reach, end)
+        self.assertNotIn("hold the board there", " ".join(verdict[1]))
+
     def test_part_of_the_image_without_corners(self):
         bag = self.written("smudge", [(topic, smudged(image), time) for topic, image, time in messages(self.pinhole)])
         self.reason(self.pinhole_verdict(bag), r"usable: cam0: no corner in these parts of the image: lower left;")

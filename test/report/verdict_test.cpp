@@ -67,6 +67,27 @@ TEST(VerdictTest, AnEdgeWithoutCornersIsExtrapolated) {
   EXPECT_NE(verdict.grade, Grade::kGood);
 }
 
+TEST(VerdictTest, AnEdgeWhoseCornersWereRejectedAsksForARicherModel) {
+  pipeline::CalibrationResult result = solved(sceneOf(fisheye()));
+  Analysis analysis = analysed(result);
+  const double end_rad = result.cameras[0].statistics.max_polar_angle_rad;
+  analysis.cameras[0].extrapolated_ratio = 0.1;
+  const auto judged_with = [&](int num_beyond, int num_rejected) {
+    result.solution.counts[0].outliers = num_rejected;
+    for (int i = 0; i < num_beyond; ++i) {
+      FoundCorner& corner = analysis.cameras[0].corners.found[static_cast<std::size_t>(i)];
+      corner.used = false;
+      corner.polar_rad = i % 2 == 0 ? std::make_optional(end_rad + 0.01) : std::nullopt;
+    }
+    return judge(result, analysis);
+  };
+  reasonWith(judged_with(19, 19), "cam0: no corner beyond");
+  reasonWith(judged_with(20, 101), "cam0: no corner beyond");  // of many that were rejected all over the image
+  const Verdict verdict = judged_with(20, 100);
+  reasonWith(verdict, "cam0: all 20 corners beyond");
+  EXPECT_EQ(textOf(verdict).find("hold the board there"), std::string::npos);
+}
+
 TEST(VerdictTest, ARegionWithoutCornersIsNamed) {
   test_support::Scene scene = sceneOf(pinhole());
   for (observation::View& view : scene.views) {

@@ -43,7 +43,7 @@ struct CameraAnalysis {
   SeenCorners corners;
   ProjectionMap map;
   double reach_rad = 0.0;                  ///< polar angle up to which the image shows something
-  double extrapolated_ratio = 0.0;         ///< share of the seen map beyond the farthest corner
+  double extrapolated_ratio = 0.0;         ///< share of the seen map beyond the farthest used corner
   std::vector<std::string> empty_regions;  ///< ninths of the image without a corner, such as "lower left"
   double focal_stdev_ratio = 0.0;
   double median_stdev_px = 0.0;                ///< of the map within reach of the corners
