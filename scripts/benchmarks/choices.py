@@ -46,7 +46,7 @@ def tilts(_):
         spread = [tilt_deg[int(image.stem)] for image in chosen]
         stdev = re.search(r"projection: \[.*?\] \+- \[\s*([0-9.]+)", text, re.DOTALL).group(1)
         rows.append([name, f"{min(spread):.0f} to {max(spread):.0f}", f"{float(stdev):.2f}",
-                     re.search(r"projection certain to ([0-9.]+) px", text).group(1)])
+                     re.search(r"projection certain to (?:better than )?([0-9.]+) px", text).group(1)])
     table(["30 views", "tilt [degrees]", "stdev of fu [px]", "uncertainty of the projection, median [px]"], rows)
 
 

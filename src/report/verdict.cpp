@@ -44,6 +44,7 @@ constexpr double kMaxDifference_ratio = 4.0;
 constexpr double kSignificance = 6.0;  ///< in stdevs
 constexpr double kMinBiasOfRms = 0.3;  ///< a pattern smaller than this share of the residuals hardly moves a model
 constexpr double kMinDelay_ns = 0.2e6;
+constexpr double kShown_px = 0.0005;  ///< what is not 0.000 with three decimals
 
 /// Collects the reasons that one camera gives.
 class CameraJudge {
@@ -69,9 +70,10 @@ class CameraJudge {
   }
 
   std::string fact() const {
-    return name_ + format(": corners to %.0f degrees from the axis, rms %.3f px, projection certain to %.3f px (median)",
+    const double stdev_px = analysis_.median_stdev_px;
+    return name_ + format(": corners to %.0f degrees from the axis, rms %.3f px, projection certain to %s px (median)",
                           statistics_.max_polar_angle_rad * kDegreesPerRadian, statistics_.rms_px,
-                          analysis_.median_stdev_px);
+                          stdev_px < kShown_px ? "better than 0.001" : format("%.3f", stdev_px).c_str());
   }
 
  private:

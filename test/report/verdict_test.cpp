@@ -59,6 +59,17 @@ TEST(VerdictTest, ManyVariedViewsOverTheWholeImageAreGood) {
   EXPECT_EQ(gradeName(rig.grade), "good") << textOf(rig);
 }
 
+TEST(VerdictTest, SmallUncertaintyIsNotSaidToBeNone) {
+  const pipeline::CalibrationResult result = solved(sceneOf(pinhole()));
+  Analysis analysis = analysed(result);
+  for (const auto& [stdev_px, words] :
+       {std::pair(0.0004, "certain to better than 0.001 px (median)"), std::pair(0.0006, "certain to 0.001 px (median)")}) {
+    analysis.cameras[0].median_stdev_px = stdev_px;
+    const std::string fact = judge(result, analysis).facts.front();
+    EXPECT_NE(fact.find(words), std::string::npos) << fact;
+  }
+}
+
 TEST(VerdictTest, AnEdgeWithoutCornersIsExtrapolated) {
   test_support::SceneOptions options;
   options.max_polar_angle_rad = 60.0 * M_PI / 180.0;
