@@ -7,6 +7,7 @@
 
 #include "moving_scene.h"
 #include "support/temporary_folder.h"
+#include "tartan_calib/pipeline/warnings.h"
 
 namespace tartan_calib::report {
 namespace {
@@ -41,6 +42,20 @@ TEST_F(ReportDataTest, NamesVerdictAndWarningsAsTheyAre) {
   ASSERT_EQ(data["warnings"].size(), 1U);  // that of the verdict is not said twice
   EXPECT_EQ(data["warnings"][0].as<std::string>(), result.warnings[1]);
   EXPECT_EQ(data["recording"].as<std::string>(), "rig.bag");
+}
+
+TEST_F(ReportDataTest, NotesDoNotRepeatReasonsInOtherWords) {
+  calibration::CameraStatistics& few = result.cameras[0].statistics;
+  few.num_views = 5;
+  few.rms_px = 2.0;
+  result.solution.counts[0].outliers = result.solution.counts[0].used;
+  result.warnings = pipeline::resultWarnings(result);
+  ASSERT_EQ(result.warnings.size(), 3U);
+  result.warnings.emplace_back("cam1: 9 of 90 corners were rejected (9 outliers)");  // of the other camera
+  writeReportData(folder.path().string(), {"rig.bag", result, analysis, judge(result, analysis), {}});
+  const YAML::Node notes = YAML::LoadFile(folder.file("data.json"))["warnings"];
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0].as<std::string>(), result.warnings.back());
 }
 
 TEST_F(ReportDataTest, HasARowForEveryCornerAndEverySampleOfTheMap) {
