@@ -9,7 +9,6 @@
 #include "board_stream.h"
 #include "support/expect_message.h"
 #include "support/simulated_scene.h"
-#include "tartan_calib/text.h"
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -389,9 +388,6 @@ TEST(CalibrateCorners, SaysWhereAMovingPupilExplainsTheResiduals) {
     CalibrateOptions options = optionsFor({"ds-none"});
     const CalibrationResult central = calibrateCorners(corners, target::AprilGrid(), options);
     EXPECT_EQ(std::count_if(central.warnings.begin(), central.warnings.end(), is_hint), shift_m > 0.0 ? 1 : 0) << shift_m;
-    const std::string before = format("cam0: residuals fall from rms %.3f to ", central.cameras[0].statistics.rms_px);
-    const std::string hint = central.warnings.empty() ? "" : central.warnings.back();
-    EXPECT_EQ(hint.rfind(before, 0) == 0, shift_m > 0.0) << hint;
     options.solve.estimate_pupil_shift = true;
     const CalibrationResult moving = calibrateCorners(corners, target::AprilGrid(), options);
     EXPECT_EQ(std::count_if(moving.warnings.begin(), moving.warnings.end(), is_hint), 0) << shift_m;
