@@ -336,7 +336,7 @@ TEST(Calibrate, ImagesOfAnotherSizeThanTheKnownCamerasAreRejectedBeforeTheDetect
 
 TEST(Calibrate, AFirstImageOfAnotherSizeThanTheKnownCamerasIsSkippedAsAnyOther) {
   std::vector<StampedImage> images = boardImages(12);
-  const cv::Mat small(100, 100, CV_8UC1, cv::Scalar(128));
+  cv::Mat small(100, 100, CV_8UC1, cv::Scalar(128));
   images.front().load = [small] { return small; };
   CalibrateOptions options = optionsFor({"pinhole-none"});
   camera::Camera known = cameraOf("pinhole-none", {400, 400, 319.5, 239.5});
