@@ -54,6 +54,14 @@ TEST(ImagePlot, ColoursStandForAmountsAndGreyForNone) {
   }
 }
 
+TEST(ImagePlot, ColoursEndAtTheLargestAmount) {
+  EXPECT_NE(ImagePlot::colourOf(0.0), ImagePlot::colourOf(1.0));
+  EXPECT_EQ(ImagePlot::colourOf(-1.0), ImagePlot::colourOf(0.0));
+  for (const double share : {1.1, 1e12}) {
+    EXPECT_EQ(ImagePlot::colourOf(share), ImagePlot::colourOf(1.0)) << share;
+  }
+}
+
 TEST(ImagePlot, AContourIsWhereTheFieldHasItsLevel) {
   ImagePlot plot("ramp", kWidth, kHeight);
   plot.drawField(ramp(), 1.0, "px");

@@ -44,14 +44,24 @@ void write(cv::Mat& canvas, const std::string& text, const cv::Point& where, Ali
 
 std::string numberText(double value) { return format("%g", value); }
 
+constexpr int kMaxLevel = 255;
+
 /// Viridis of amounts from 0 to 1, CV_8UC3.
 cv::Mat coloured(const cv::Mat& amounts) {
-  constexpr double kLevels = 255.0;
   cv::Mat levels;
-  amounts.convertTo(levels, CV_8U, kLevels);
+  amounts.convertTo(levels, CV_8U, kMaxLevel);
   cv::Mat colours;
   cv::applyColorMap(levels, colours, cv::COLORMAP_VIRIDIS);
   return colours;
+}
+
+/// Viridis in a row, from level 0 to kMaxLevel.
+cv::Mat3b viridis() {
+  cv::Mat1f amounts(1, kMaxLevel + 1);
+  for (int level = 0; level <= kMaxLevel; ++level) {
+    amounts(0, level) = static_cast<float>(level) / kMaxLevel;
+  }
+  return coloured(amounts);
 }
 
 /// CV_8U mask of the NaN.
@@ -195,9 +205,11 @@ void ImagePlot::drawField(const ImageField& field, double largest, const std::st
   drawColourBar(largest, label);
 }
 
+/// From a table: applyColorMap computes its own anew in every call.
 cv::Scalar ImagePlot::colourOf(double share) {
-  const cv::Mat1f amount(1, 1, static_cast<float>(share));
-  const auto colour = coloured(amount).at<cv::Vec3b>(0, 0);
+  static const cv::Mat3b table = viridis();
+  const auto level = cv::saturate_cast<uchar>(kMaxLevel * std::clamp(share, 0.0, 1.0));
+  const cv::Vec3b& colour = table(0, level);
   return {static_cast<double>(colour[0]), static_cast<double>(colour[1]), static_cast<double>(colour[2])};
 }
 

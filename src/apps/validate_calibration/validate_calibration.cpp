@@ -74,6 +74,7 @@ void writeOutputs(const ValidateOptions& options, const Validation& validation) 
     std::printf("Errors written to %s\n", options.errors_file.c_str());
   }
   if (!options.picture_file.empty()) {
+    setInterruptedStep("before the picture was drawn");
     savePng(options.picture_file, errorPicture(validation));
     std::printf("Picture written to %s\n", options.picture_file.c_str());
   }
