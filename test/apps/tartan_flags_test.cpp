@@ -73,6 +73,16 @@ TEST(TartanFlags, TakeAllProjectionsThatAreGivenOneByOne) {
   EXPECT_EQ(translateTartanFlags(views).notes.size(), 1U);
 }
 
+TEST(TartanFlags, OfViewsAloneHaveNoEffectOnTheDefaultProjections) {
+  for (const char* flag : {"--fovs", "--poses", "--resolutions"}) {
+    const Arguments arguments = argumentsOf({flag, "90", flag, "90"});
+    EXPECT_TRUE(arguments.calibrate.projections.empty()) << flag;
+    EXPECT_GT(arguments.calibrate.max_rounds, 0) << flag;
+    ASSERT_EQ(arguments.notes.size(), 1U) << flag;
+    EXPECT_TRUE(contains(arguments.notes[0], std::string(flag) + " has no effect: ")) << arguments.notes[0];
+  }
+}
+
 TEST(TartanFlags, SayThatRoundsAreLeftOutWhereTheyAre) {
   const auto is_told = [](const Words& words) {
     const Words notes = translateTartanFlags(words).notes;
@@ -81,6 +91,8 @@ TEST(TartanFlags, SayThatRoundsAreLeftOutWhereTheyAre) {
   EXPECT_TRUE(is_told({"--projections", "cube"}));
   EXPECT_FALSE(is_told({"--projections", "cube", "--max_rounds=3"}));
   EXPECT_FALSE(is_told({"--projections", "cube", "--projections", "cornerpredictor"}));
+  EXPECT_EQ(translateTartanFlags({"--projections", "none"}).notes,
+            Words{"--projections none: corners are not looked for at their predictions"});
 }
 
 TEST(TartanFlags, TakeProjectionsWithoutAValueAsNone) {

@@ -185,6 +185,13 @@ const TartanFlag* findFlag(const std::string& word) {
   return is_other ? nullptr : found;
 }
 
+/// TartanCalib's default, where flags of views are given without projections: they have no effect on it.
+void chooseProjections(const Flags& flags, TartanCommand& command) {
+  if (!flags.has("projections") && (flags.has("fovs") || flags.has("poses") || flags.has("resolutions"))) {
+    command.words.insert(command.words.end(), {"--projections", "cornerpredictor"});
+  }
+}
+
 /// TartanCalib looks for corners at their predictions only where it is told to.
 void chooseRounds(const Flags& flags, TartanCommand& command) {
   const auto projections = flags.get<Words>("projections");
@@ -192,8 +199,10 @@ void chooseRounds(const Flags& flags, TartanCommand& command) {
     return;
   }
   command.words.insert(command.words.end(), {"--max-rounds", "0"});
-  command.notes.push_back("--projections " + joined(projections, " ") +
-                          ": corners are not looked for at their predictions; add cornerpredictor for both");
+  const bool has_views =
+      std::any_of(projections.begin(), projections.end(), [](const auto& each) { return each != "none"; });
+  command.notes.push_back("--projections " + joined(projections, " ") + ": corners are not looked for at their predictions" +
+                          (has_views ? "; add cornerpredictor for both" : ""));
 }
 
 /// Limits of adaptive windows ask for these; where symmetry was asked for as well, they mean nothing.
@@ -260,6 +269,7 @@ void chooseModes(const Flags& flags, TartanCommand& command) {
 void decide(const std::vector<Given>& all, TartanCommand& command) {
   const Flags flags = parseFlags(command.words);
   command.help = flags.has("help");
+  chooseProjections(flags, command);
   chooseRounds(flags, command);
   chooseRefinement(flags, all, command);
   chooseFilter(flags, all, command);
