@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <variant>
 
 #include "common/program.h"
 #include "common/recording.h"
@@ -82,6 +83,14 @@ std::vector<pipeline::CameraCorners> openCorners(const std::string& path, const 
   return cameras;
 }
 
+/// Circles are found at their centres; all kinds of refinement are for the corners of tags and squares.
+void noteRefinement(const Inputs& inputs, const Warn& warn) {
+  const bool is_circles = std::holds_alternative<target::CircleGrid>(inputs.target);
+  if (is_circles && inputs.options.recovery.refinement != detection::RecoveryOptions().refinement) {
+    warn("--refinement has no effect: circles are not refined");
+  }
+}
+
 void applyFocalHint(const char* value, Inputs& inputs, const Warn& warn) {
   inputs.options.focal_hint_px = focalHint(value);
   if (value != nullptr && !inputs.options.focal_hint_px) {
@@ -120,6 +129,7 @@ Inputs openInputs(const Arguments& arguments, const Warn& warn) {
       throw UsageError("--topics is missing: " + arguments.init_file + " names none");
     }
     inputs.dataset = arguments.recording;
+    noteRefinement(inputs, warn);
   }
   checkCounts(arguments, inputs);
   if (inputs.corners.empty()) {
