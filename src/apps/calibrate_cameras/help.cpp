@@ -46,7 +46,7 @@ Corners
   --refinement R            of corners in the rounds: symmetry (default; through the model), adaptive (TartanCalib's windows)
                             or fixed (Kalibr's)
   --symmetry-window W       symmetry: half-width, 1 reaches as far as the board is symmetric about a corner (0.9); the paper's
-                            on Kalibr's board is 1.5. More than 1 takes in payload and fails
+                            on Kalibr's board is 1.5. On an AprilGrid more than 1 takes in payload and fails
   --window-scale S  --min-resize-window-size PX  --max-resize-window-size PX
                             adaptive: half-width as a share of the distance to the nearest corner (0.4), between (2) and (8)
 

@@ -44,7 +44,7 @@ Views
   --reach RATIO     how far the board's centre goes, from the axis (0) to the rim of the image (0.95)
   --tilt DEG        of the board about each of its axes, at most (43)
   --blurred RATIO   part of the views with motion blur (0)
-  --motion-blur PX  longest of it (8)
+  --motion-blur PX  longest of it, as the mean way of the corners in the image; single corners move farther (8)
   --hands RATIO     part of the views with a hand before the board (0)
   --exposure RATIO  above 1 white paper is cut off at 255 (1)
   --psf PX          standard deviation of the lens' blur (0.6)
