@@ -43,7 +43,8 @@ void print(const Inspection& inspection, const std::string& target_file) {
     printWarning(warning);
   }
   if (warnings.empty()) {
-    std::cout << "Nothing speaks against a calibration.\n";
+    std::cout << "Nothing speaks against a calibration"
+              << (inspection.target ? ".\n" : " (the board was not looked for: give --target).\n");
   }
   const std::string command = calibrationCommand(inspection, target_file);
   if (!command.empty()) {

@@ -135,6 +135,11 @@ TEST(Warnings, NameTopicFaultAndRemedy) {
   const std::vector<Case> cases = {
       {[](auto& c, auto&) { c.is_supported = false; }, {"mono8", "another topic"}},
       {[](auto& c, auto&) { c.num_unreadable = 3; }, {"3 ", "cannot be read"}},
+      {[](auto& c, auto&) {
+         c.num_unreadable = 3;
+         c.refusal = "/cam1/image_raw: refused";
+       },
+       {"refused"}},
       {[](auto& c, auto&) { c.num_images = 5; }, {"only 5 images", "20"}},
       {[](auto& c, auto&) {
          c.sizes[{320, 240}] = 7;
@@ -221,6 +226,27 @@ TEST(Warnings, SayWhatIsWrongWithTheBoard) {
     EXPECT_EQ(warnings[0].rfind("/cam1/image_raw: ", 0), 0U) << warnings[0];
     EXPECT_NE(warnings[0].find(each.words), std::string::npos) << warnings[0];
   }
+}
+
+TEST(Text, NamesTheBoardThatIsThereInsteadOfTheTargets) {
+  Inspection inspection = goodRig();
+  inspection.target = target::AprilGrid{};
+  pipeline::CameraCorners& corners = inspection.cameras[0].corners;
+  corners.num_images = 40;
+  EXPECT_NE(inspectionText(inspection).find("not seen in any of 40 images\n"), std::string::npos);
+  corners.counts.other_sizes[{5, 4}] = 30;
+  EXPECT_NE(inspectionText(inspection).find("not seen in any of 40 images: 30 images show 5 rows and 4 columns of tags"),
+            std::string::npos)
+      << inspectionText(inspection);
+}
+
+TEST(Text, TellsTheBrightestPartOfTheImages) {
+  Inspection inspection = goodRig();
+  EXPECT_NE(inspectionText(inspection).find("brightest 1 % from 200 on;"), std::string::npos);
+  for (ImageQuality& sample : inspection.cameras[0].samples) {
+    sample.bright_level = 255.0;
+  }
+  EXPECT_NE(inspectionText(inspection).find("brightest 1 % at 255;"), std::string::npos);
 }
 
 TEST(Command, NamesTheUsableTopics) {

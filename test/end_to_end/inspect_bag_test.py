@@ -3,6 +3,9 @@
 import shlex
 import unittest
 
+import rosbag
+from sensor_msgs.msg import CompressedImage
+
 from programs import Recordings, assert_stopped, interrupt_when, run, shows_bar, start_on_terminal
 
 
@@ -36,6 +39,29 @@ class InspectBag(unittest.TestCase):
         finished = run("inspect_bag", self.bag, "--target", board)
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.assertIn("6 rows and 6 columns", finished.stdout)
+
+    def test_without_a_target_it_says_that_no_board_was_looked_for(self):
+        lines = run("inspect_bag", self.bag).stdout.splitlines()
+        self.assertIn("Nothing speaks against a calibration (the board was not looked for: give --target).", lines)
+        lines = run("inspect_bag", self.bag, "--target", self.target).stdout.splitlines()
+        self.assertFalse(any("was not looked for" in line for line in lines), lines)
+
+    def test_a_topic_that_calibrate_cameras_refuses_is_not_suggested(self):
+        images = self.recordings.path / "images"
+        rendered = run("simulate", "--output-dir", images, "--lens", "pinhole70", "--resolution", "480x400", "--views", 1)
+        self.assertEqual(rendered.returncode, 0, rendered.stderr)
+        png = next((images / "cam0").iterdir()).read_bytes()
+        two_types = self.recordings.path / "two_types.bag"
+        with rosbag.Bag(str(self.bag)) as original, rosbag.Bag(str(two_types), "w") as bag:
+            for topic, message, time in original.read_messages():
+                bag.write(topic, message, time)
+                if topic == "/cam0/image_raw":  # the type of the first message is that of the topic
+                    bag.write("/camera", CompressedImage(header=message.header, format="png", data=png), time)
+                    bag.write("/camera", message, time)
+        finished = run("inspect_bag", two_types, "--target", self.target)
+        self.assertIn("/camera has messages that are not of the type that the bag says", finished.stdout)
+        suggested = "--topics /cam0/image_raw /cam1/image_raw --models ds-none ds-none"
+        self.assertTrue(finished.stdout.splitlines()[-1].endswith(suggested), finished.stdout)
 
     def test_ctrl_c_ends_it(self):
         process, terminal = start_on_terminal(self, "inspect_bag", self.bag, "--target", self.target)

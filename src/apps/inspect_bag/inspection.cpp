@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 
+#include "common/recording.h"
 #include "tartan_calib/detection/target_detector.h"
 #include "tartan_calib/error.h"
 #include "tartan_calib/io/image_folder.h"
@@ -103,6 +104,16 @@ void lookAtSamples(const ros::ImageTopic& topic, const detection::TargetDetector
   }
 }
 
+/// Damaged messages are skipped, those of another type are not.
+std::string refusalOf(const std::string& recording, const std::string& topic) {
+  try {
+    openRecording(recording, {topic}, {}, [](const std::string& /*warning*/) {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// Depth images can be read and show no board.
 bool looksLikeDepth(const std::string& topic) { return topic.find("depth") != std::string::npos; }
 
@@ -114,20 +125,24 @@ std::string reasonAgainst(const CameraInspection& camera, bool has_target) {
   if (camera.samples.empty()) {
     return "it has no readable images";
   }
+  if (!camera.refusal.empty()) {
+    return "a calibration refuses it";
+  }
   if (has_target) {
     return camera.corners.images.empty() ? "no board was seen" : "";
   }
   return looksLikeDepth(camera.topic) ? "its name says depth" : "";
 }
 
-CameraInspection inspectCamera(const ros::ImageTopic& topic, const detection::TargetDetector* detector,
-                               SampleCounter& counter) {
+CameraInspection inspectCamera(const std::string& recording, const ros::ImageTopic& topic,
+                               const detection::TargetDetector* detector, SampleCounter& counter) {
   CameraInspection camera;
   camera.topic = topic.topic;
   camera.type = topic.type;
   camera.corners.topic = topic.topic;
   camera.num_images = topic.images.size();
   camera.num_unreadable = topic.num_unreadable;
+  camera.refusal = topic.num_unreadable > 0 ? refusalOf(recording, topic.topic) : "";
   camera.is_supported = topic.is_supported;
   std::set<std::string> encodings;
   for (const ros::ImageRecord& image : topic.images) {
@@ -191,7 +206,7 @@ Inspection inspect(const std::string& recording, const std::optional<target::Tar
   const auto detector = target ? std::make_unique<detection::TargetDetector>(*target) : nullptr;
   SampleCounter counter(contents.image_topics, progress);
   for (const ros::ImageTopic& topic : contents.image_topics) {
-    inspection.cameras.push_back(inspectCamera(topic, detector.get(), counter));
+    inspection.cameras.push_back(inspectCamera(recording, topic, detector.get(), counter));
   }
   leaveOutCopies(inspection.cameras);
   compareTimes(contents, inspection);

@@ -29,6 +29,7 @@ struct CameraInspection {
   std::size_t num_images = 0;
   std::size_t num_unreadable = 0;  ///< messages, and samples that cannot be decoded
   std::string unreadable_reason;   ///< of the first such sample
+  std::string refusal;             ///< why a calibration refuses the topic for its unreadable messages; empty otherwise
   bool is_supported = true;
   TopicTiming timing;
   std::vector<ImageQuality> samples;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tartan_calib/median.h"
+#include "tartan_calib/pipeline/warnings.h"
 #include "tartan_calib/text.h"
 
 namespace tartan_calib::apps {
@@ -71,9 +72,11 @@ std::string stampText(const CameraInspection& camera) {
 }
 
 std::string lightText(const std::vector<ImageQuality>& samples) {
-  return format("mean %.0f of 255, 1 %% above %.0f; %.1f %% saturated, %.1f %% black",
+  constexpr double kWhite = 255.0;
+  const double bright_level = medianOf(samples, [](const ImageQuality& s) { return s.bright_level; });
+  return format("mean %.0f of 255, brightest 1 %% %s; %.1f %% saturated, %.1f %% black",
                 medianOf(samples, [](const ImageQuality& s) { return s.mean_level; }),
-                medianOf(samples, [](const ImageQuality& s) { return s.bright_level; }),
+                bright_level < kWhite ? format("from %.0f on", bright_level).c_str() : "at 255",
                 kPercent * medianOf(samples, [](const ImageQuality& s) { return s.saturated_ratio; }),
                 kPercent * medianOf(samples, [](const ImageQuality& s) { return s.black_ratio; }));
 }
@@ -93,9 +96,10 @@ std::string sharpnessText(const std::vector<ImageQuality>& samples) {
                 widths_px.front(), widths_px.back());
 }
 
-std::string boardText(const pipeline::CameraCorners& corners) {
+std::string boardText(const pipeline::CameraCorners& corners, const target::Target& target) {
   if (corners.images.empty()) {
-    return format("not seen in any of %zu images", corners.num_images);
+    const std::optional<std::string> note = pipeline::boardNote(corners, target);
+    return format("not seen in any of %zu images", corners.num_images) + (note ? ": " + *note : "");
   }
   std::vector<double> counts;
   for (const observation::CameraView& image : corners.images) {
@@ -105,7 +109,7 @@ std::string boardText(const pipeline::CameraCorners& corners) {
                 corners.num_images, upperMedian(counts));
 }
 
-std::string cameraText(const CameraInspection& camera, bool has_target) {
+std::string cameraText(const CameraInspection& camera, const std::optional<target::Target>& target) {
   std::string text = '\n' + camera.topic + "  (" + kindText(camera) + ")\n";
   if (camera.num_images == 0) {
     return text + line("images", "none");
@@ -116,8 +120,8 @@ std::string cameraText(const CameraInspection& camera, bool has_target) {
     return text + line("left out", camera.left_out);
   }
   text += line("light", lightText(camera.samples)) + line("sharpness", sharpnessText(camera.samples));
-  if (has_target) {
-    text += line("board", boardText(camera.corners));
+  if (target) {
+    text += line("board", boardText(camera.corners, *target));
     if (!camera.corners.images.empty()) {
       for (const std::string& row : coveragePicture(camera.corners)) {
         text += line("", row);
@@ -189,7 +193,7 @@ std::string rateFlag(const Inspection& inspection) {
 std::string inspectionText(const Inspection& inspection) {
   std::string text = inspection.recording + '\n';
   for (const CameraInspection& camera : inspection.cameras) {
-    text += cameraText(camera, inspection.target.has_value());
+    text += cameraText(camera, inspection.target);
   }
   return text + synchronizationText(inspection) + otherText(inspection);
 }

@@ -54,7 +54,9 @@ class CameraWarnings {
   void add(const std::string& text) { warnings_.push_back(camera_.topic + ": " + text); }
 
   void checkMessages() {
-    if (camera_.num_unreadable > 0) {
+    if (!camera_.refusal.empty()) {
+      warnings_.push_back(camera_.refusal);
+    } else if (camera_.num_unreadable > 0) {
       add(format("%zu of the images that were looked at cannot be read and would be left out", camera_.num_unreadable) +
           (camera_.unreadable_reason.empty() ? "" : " (first: " + camera_.unreadable_reason + ")"));
     }
