@@ -128,7 +128,9 @@ Exposure ExposureMaker::expose(const Scene& scene, const BoardPattern& pattern, 
   if (!exposure.occluded.empty()) {
     const HandLayer hand = drawHand(*frame.hand, camera_.camera, T_cam_target);
     exposure.cover = cv::Mat1f(exposure.light.size(), 0.0F);
-    hand.cover.copyTo(exposure.cover(hand.window));
+    if (!hand.window.empty()) {  // it may be out of view in the middle
+      hand.cover.copyTo(exposure.cover(hand.window));
+    }
   }
   exposure.light = exposure.light.mul(shading_, frame.exposure_ratio);
   applyPsf(exposure.light, scene.sensor.psf_sigma_px);

@@ -214,6 +214,29 @@ TEST(Renderer, CallsACornerHiddenWhereTheHandCoversItAndNotWhereItIsOnlyNear) {
   EXPECT_GE(num_near, 1);
 }
 
+TEST(Renderer, ShowsAHandThatOnlyEntersTheImageAfterTheMiddleOfTheExposure) {
+  Scene scene = stillScene();
+  LensRequest narrow;
+  narrow.lens = "pinhole60";
+  narrow.width = 160;
+  narrow.height = 128;
+  scene.cameras = {makeLens(narrow)};
+  SceneFrame& frame = scene.frames[0];
+  const Eigen::Quaterniond facing(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  frame.T_rig_target = geometry::Rigid3(facing, {-0.2, 0.12, 0.5});
+  frame.motion << 0.1, 0.0, 0.0, 0.0, 0.0, 0.0;
+  const cv::Mat1f without = Renderer(scene).renderLight(0, 0);
+  const double left_edge_m = 0.2 - 0.5 * std::tan(M_PI / 6.0);
+  constexpr double kFingertip_m = 0.134;  // before the palm
+  frame.hand = Hand{{left_edge_m - kFingertip_m - 0.02, 0.12}, 0.0, 1.0};
+  const Renderer renderer(scene);
+  EXPECT_GT(cv::norm(without, renderer.renderLight(0, 0), cv::NORM_INF), 1.0);
+  const auto rendered = renderer.render(0);
+  for (const TrueCorner& corner : rendered.views[0].corners) {
+    EXPECT_FALSE(corner.hidden) << corner.corner_id;
+  }
+}
+
 TEST(Renderer, saysHowFarCornersMoveDuringTheExposure) {
   Scene scene = stillScene();
   SceneFrame& frame = scene.frames[0];
