@@ -91,7 +91,7 @@ std::string fullName(std::string prefix) {
     return own.front();
   }
   if (of_kalibr.empty() && own.empty()) {
-    throw UsageError("unknown flag --" + prefix + "; see --help");
+    throw UsageError("unrecognised option '--" + prefix + "'; see --help");
   }
   Words all = of_kalibr;
   all.insert(all.end(), own.begin(), own.end());
