@@ -13,7 +13,7 @@ INTERNAL = {"the detector needs images with one channel of 8 bits; convert them 
             "only 8-bit grey images can be written to topic"}
 MIN_PHRASE = 12  # letters; shorter ones, such as ": ", are glue
 
-MESSAGE = re.compile(r"\b(InputError|UsageError|CalibrationError|printWarning|printError|notify|warn|format|reject\w*|push_back)\s*\(")
+MESSAGE = re.compile(r"\b(InputError|UsageError|CalibrationError|printWarning|printError|notify|warn|require|format|reject\w*|push_back)\s*\(")
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 FILLED_IN = re.compile(r"%(?:%|[-+ 0#]*\d*(?:\.\d+)?(?:[hlzt]*)[a-zA-Z])")
 
