@@ -129,6 +129,9 @@ FoundBoards findBoards(const cv::Mat& gray, const target::Checkerboard& board) {
   const auto min_corners = static_cast<std::size_t>(kMinStart_ratio * board.rows * board.cols);
   FoundBoards found;
   for (const SaddleLattice& lattice : findLattices(gray, saddles, min_corners)) {
+    if (!isRegular(lattice, saddles)) {
+      continue;
+    }
     if (auto placed = placeOnBoard(lattice, saddles, board)) {
       found.placed.push_back(std::move(*placed));
     } else if (const auto size = shownSize(lattice)) {

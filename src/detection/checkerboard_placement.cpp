@@ -13,6 +13,12 @@ constexpr double kMinLineFill_ratio = 0.5;
 // A lattice with a smaller share of corners says nothing about the size of a board.
 constexpr double kMinBoardFill_ratio = 0.9;
 
+// Error of the prediction of a corner from its neighbours [squares] that three quarters of the corners must stay below.
+// Boards of 6x5 corners and more at the rim of a lens of 195 degrees have up to 0.06, letters 0.27 and more; boards of 5x4
+// that fill half of such an image have up to 0.21.
+constexpr double kMaxPredictionError_squares = 0.22;
+constexpr double kRegularShare = 0.75;
+
 /// Columns and rows of a lattice, the first inclusive, the last exclusive.
 struct Extent {
   int first_column, last_column, first_row, last_row;
@@ -133,6 +139,22 @@ std::optional<PlacedCorners> placeOnBoard(const SaddleLattice& lattice, const st
     }
   }
   return best;
+}
+
+bool isRegular(const SaddleLattice& lattice, const std::vector<Saddle>& saddles) {
+  std::map<LatticePlace, Eigen::Vector2d> corners_px;
+  for (const LatticeNode& node : lattice.nodes()) {
+    corners_px[{node.row, node.column}] = saddles[static_cast<std::size_t>(node.saddle_index)].px;
+  }
+  std::ptrdiff_t num_regular = 0;
+  std::ptrdiff_t num_predicted = 0;
+  for (const auto& [place, px] : corners_px) {
+    if (const std::optional<LatticeMap> map = fitLatticeMap(corners_px, place, false)) {
+      ++num_predicted;
+      num_regular += (map->centre_px() - px).norm() < kMaxPredictionError_squares * map->minSpacing_px() ? 1 : 0;
+    }
+  }
+  return static_cast<double>(num_regular) >= kRegularShare * static_cast<double>(num_predicted);
 }
 
 std::optional<BoardSize> shownSize(const SaddleLattice& lattice) {

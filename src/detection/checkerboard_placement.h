@@ -27,6 +27,10 @@ struct PlacedCorners {
 std::optional<PlacedCorners> placeOnBoard(const SaddleLattice& lattice, const std::vector<Saddle>& saddles,
                                           const target::Checkerboard& board);
 
+/// Whether most corners lie where their neighbours in the lattice predict them. Those of a board do, through any lens;
+/// saddles that letters or tiles happen to link to a lattice of a board's size do not.
+bool isRegular(const SaddleLattice& lattice, const std::vector<Saddle>& saddles);
+
 /// The size of the checkerboard that a lattice shows; nothing where many of its corners are missing.
 std::optional<BoardSize> shownSize(const SaddleLattice& lattice);
 

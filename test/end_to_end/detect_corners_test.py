@@ -1,5 +1,7 @@
 """Corners detected alone are those that a calibration detects; nothing is left behind where there is no result."""
 
+import csv
+import math
 import unittest
 
 import yaml
@@ -10,6 +12,13 @@ TOPICS = ["/cam0/image_raw", "/cam1/image_raw"]
 MODELS = ["ds-none", "ds-none"]
 # The file has pixels to 1e-6. Of this small recording that moves the focal length by 1e-5 px, a millionth of its stdev.
 MAX_RATIO = 1e-6
+
+
+def positions(file):
+    """Pixel by (stamp, corner) of a file of corners."""
+    with file.open() as lines:
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    return {(row["stamp_ns"], row["corner_id"]): (float(row["u_px"]), float(row["v_px"])) for row in rows}
 
 
 class DetectCorners(unittest.TestCase):
@@ -49,6 +58,20 @@ class DetectCorners(unittest.TestCase):
         for row, other_row in zip(direct["cam1"]["T_cn_cnm1"], alone["cam1"]["T_cn_cnm1"]):
             for value, other in zip(row, other_row):
                 self.assertAlmostEqual(value, other, delta=MAX_RATIO)
+
+    def test_letters_on_a_wall_are_no_checkerboard(self):
+        # The room's posters have letters whose corners link to lattices of the board's size, beside the board and without it.
+        target = self.recordings.path / "checkers.yaml"
+        target.write_text("target_type: checkerboard\ntargetCols: 6\ntargetRows: 5\nrowSpacingMeters: 0.08\ncolSpacingMeters: 0.08\n")
+        bag = self.recordings.simulate("posters", "--lens", "gopro150", "--target", target, "--views", 40, "--seed", 2)
+        corners = self.recordings.path / "posters-corners.csv"
+        finished = self.detect("--output", corners, topics=TOPICS[:1], bag=bag, target=target)
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        truth, found = (positions(file) for file in (self.recordings.path / "posters-truth-corners.csv", corners))
+        self.assertGreaterEqual(len({stamp for stamp, _ in found}), 20)
+        for corner, px in found.items():
+            self.assertIn(corner, truth)
+            self.assertLess(math.dist(px, truth[corner]), 1.0, corner)
 
     def test_the_same_bytes_whatever_the_threads(self):
         files = [self.recordings.path / f"threads{count}.csv" for count in (1, 3)]
