@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "bag_index.h"
 #include "head_reader.h"
@@ -62,6 +63,14 @@ class ImageTopics {
 
   bool has(const std::string& topic) const { return topics_.count(topic) > 0; }
 
+  std::set<std::string> names() const {
+    std::set<std::string> names;
+    for (const auto& [name, topic] : topics_) {
+      names.insert(name);
+    }
+    return names;
+  }
+
   template <class ReadHead>
   void add(const std::string& topic, std::int64_t received_ns, const ReadHead& read_head) {
     ImageTopic& entry = topics_.at(topic);
@@ -99,7 +108,7 @@ class ImageTopics {
 };
 
 void readHeads(const SharedBag& shared, BagIndex& index, ImageTopics& images) {
-  HeadReader heads(&index);
+  HeadReader heads(&index, images.names());
   rosbag::View view(shared.bag,
                     [&images](const rosbag::ConnectionInfo* connection) { return images.has(connection->topic); });
   for (const rosbag::MessageInstance& message : view) {

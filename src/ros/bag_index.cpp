@@ -12,6 +12,7 @@ constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::size_t kMaxHeaderBytes = 1 << 20;  ///< far beyond what recorders write; more is a damaged file
 
 /// Operations, the kinds of records.
+constexpr char kMessage = 0x02;
 constexpr char kBagHeader = 0x03;
 constexpr char kIndexData = 0x04;
 constexpr char kChunk = 0x05;
@@ -64,7 +65,9 @@ BagIndex::BagIndex(const std::string& path) : path_(path), file_(path, std::ios:
 std::vector<std::uint8_t> BagIndex::beginning(const Message& message, std::size_t max_bytes) {
   file_.clear();
   file_.seekg(static_cast<std::streamoff>(message.position));
-  readFields();
+  if (!isOperation(readFields(), kMessage)) {
+    fail();
+  }
   const std::string bytes = readText(std::min<std::size_t>(readNumber(), max_bytes));
   return {bytes.begin(), bytes.end()};
 }
@@ -142,7 +145,9 @@ void BagIndex::readChunkIndex(std::uint64_t data_position, bool is_compressed) {
       const std::int64_t seconds = readNumber();
       message.received_ns = seconds * kNsPerSecond + readNumber();
       message.position = readNumber() + (is_compressed ? 0 : data_position);
-      messages_.push_back(message);
+      if (topics_.count(message.connection) > 0) {  // else of a damaged record: nothing says what its messages are
+        messages_.push_back(message);
+      }
     }
   }
   file_.clear();

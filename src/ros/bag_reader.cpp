@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "bag_index.h"
@@ -105,7 +106,7 @@ void scan(const SharedBag& shared, std::map<std::string, TopicIndex>& indices) {
     topics.push_back(topic);
   }
   std::optional<BagIndex> places = indexOf(shared.path);
-  HeadReader heads(places ? &*places : nullptr);
+  HeadReader heads(places ? &*places : nullptr, {topics.begin(), topics.end()});
   rosbag::View view(shared.bag, rosbag::TopicQuery(topics));
   for (const rosbag::MessageInstance& message : view) {
     addMessage(message, heads, indices.at(message.getTopic()));

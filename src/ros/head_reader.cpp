@@ -1,6 +1,6 @@
 #include "head_reader.h"
 
-#include <set>
+#include <exception>
 #include <vector>
 
 namespace tartan_calib::ros {
@@ -19,11 +19,15 @@ MessageHead parseHead(std::vector<std::uint8_t> bytes) {
 
 }  // namespace
 
-HeadReader::HeadReader(BagIndex* index) : index_(index) {
+HeadReader::HeadReader(BagIndex* index, const std::set<std::string>& topics) : index_(index) {
   std::set<Key> ambiguous;
   for (std::size_t i = 0; index != nullptr && i < index->messages().size(); ++i) {
     const BagIndex::Message& message = index->messages()[i];
-    const Key key(index->topics().at(message.connection), message.received_ns);
+    const std::string& topic = index->topics().at(message.connection);
+    if (topics.count(topic) == 0) {
+      continue;
+    }
+    const Key key(topic, message.received_ns);
     if (message.is_compressed || !message_at_.emplace(key, i).second) {
       ambiguous.insert(key);
     }
@@ -35,11 +39,15 @@ HeadReader::HeadReader(BagIndex* index) : index_(index) {
 
 MessageHead HeadReader::read(const rosbag::MessageInstance& message, bool is_compressed_image) {
   const auto found = message_at_.find({message.getTopic(), static_cast<std::int64_t>(message.getTime().toNSec())});
-  if (found == message_at_.end()) {
-    return is_compressed_image ? message.instantiate<CompressedHead>()->head : message.instantiate<ImageHead>()->head;
+  if (found != message_at_.end()) {
+    try {
+      const std::vector<std::uint8_t> bytes = index_->beginning(index_->messages()[found->second], kHeadBytes);
+      return is_compressed_image ? parseHead<CompressedHead>(bytes) : parseHead<ImageHead>(bytes);
+    } catch (const std::exception&) {
+      // A head that is longer, or damaged: rosbag says which.
+    }
   }
-  const std::vector<std::uint8_t> bytes = index_->beginning(index_->messages()[found->second], kHeadBytes);
-  return is_compressed_image ? parseHead<CompressedHead>(bytes) : parseHead<ImageHead>(bytes);
+  return is_compressed_image ? message.instantiate<CompressedHead>()->head : message.instantiate<ImageHead>()->head;
 }
 
 }  // namespace tartan_calib::ros

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -16,8 +17,8 @@ namespace tartan_calib::ros {
 /// pixel of the recording; only what it unpacks, and what the index does not tell apart, is read through it.
 class HeadReader {
  public:
-  /// Keeps the pointer. Without an index rosbag reads all heads.
-  explicit HeadReader(BagIndex* index);
+  /// Of messages on these topics. Keeps the pointer; without an index rosbag reads all heads.
+  HeadReader(BagIndex* index, const std::set<std::string>& topics);
 
   /// Throws where the message is damaged.
   MessageHead read(const rosbag::MessageInstance& message, bool is_compressed_image);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "ros/bag_file.h"
 #include "tartan_calib/ros/bag_contents.h"
@@ -80,6 +81,11 @@ struct Storage {
   rosbag::CompressionType compression;
 };
 
+std::string contentOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 class BagStorage : public ::testing::TestWithParam<Storage> {};
 
 INSTANTIATE_TEST_SUITE_P(BagReader, BagStorage,
@@ -107,6 +113,35 @@ TEST_P(BagStorage, EveryStampHasItsOwnPixels) {
     EXPECT_EQ(images[i].stamp_ns, kStart + value * kMs);
     EXPECT_EQ(images[i].load().at<std::uint8_t>(0, 0), value);
   }
+}
+
+TEST(BagReader, ReadsStampsBehindANameOfAnyLength) {
+  const BagFile file;
+  sensor_msgs::Image image = message(grayRamp(), "mono8", kStart + 3 * kMs);
+  image.header.frame_id = std::string(100'000, 'f');
+  store<sensor_msgs::Image>(file.path(), {image});
+  const std::vector<pipeline::StampedImage> images = readAll(file.path());
+  ASSERT_EQ(images.size(), 1U);
+  EXPECT_EQ(images[0].stamp_ns, kStart + 3 * kMs);
+}
+
+TEST(BagReader, LeavesOutMessagesOfAConnectionThatTheBagDoesNotKnow) {
+  const BagFile file;
+  store<sensor_msgs::Image>(file.path(), {message(grayRamp(), "mono8")});
+  {
+    rosbag::Bag bag(file.path(), rosbag::bagmode::Append);
+    bag.write("/other", ::ros::Time(1), message(grayRamp(), "mono8"));
+  }
+  // The last record of the index says of connection 1 where its messages are; here of one that no record describes.
+  std::string bytes = contentOf(file.path());
+  const std::string record = std::string("conn=") + '\x01' + std::string(3, '\0');
+  const std::size_t at = bytes.rfind(std::string("op=") + '\x04');
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t conn = bytes.rfind(record, at);
+  ASSERT_NE(conn, std::string::npos);
+  bytes[conn + record.size() - 4] = '\x09';
+  std::ofstream(file.path(), std::ios::binary) << bytes;
+  EXPECT_EQ(readAll(file.path()).size(), 1U);
 }
 
 TEST(BagReader, CanBeReadAgain) {
