@@ -125,10 +125,10 @@ class Minimizer {
 
   /// For a step that gains too little.
   double costOfBetterStep(const Candidate& candidate, double cost) {
-    if (candidate.promised < kSmallPromise * equations_.cost) {
-      cost = costAfterShortening(candidate, cost);
+    if (!(cost < equations_.cost)) {
+      return costAfterCorrection(cost);
     }
-    return cost < equations_.cost ? cost : costAfterCorrection(cost);
+    return candidate.promised < kSmallPromise * equations_.cost ? costAfterShortening(candidate, cost) : cost;
   }
 
   /// Close to a minimum with residuals such a step is too long: where J'J is less than the cost's true curvature,
@@ -143,7 +143,7 @@ class Minimizer {
     problem_.restore();
     problem_.move(scaled(candidate.step, share));
     const double shortened = totalCost(problem_, options_.num_threads);
-    if (shortened < std::min(cost, equations_.cost)) {
+    if (shortened < cost) {
       return shortened;
     }
     problem_.restore();

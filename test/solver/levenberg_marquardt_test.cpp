@@ -18,6 +18,7 @@ class Rosenbrock : public BlockProblem {
   double max_x = std::numeric_limits<double>::infinity();
   double b = 0.0;
   double steepness = 10.0;
+  double floor = 0.0;  ///< a residual that nothing changes
 
   int numShared() const override { return 2; }
   int numBlocks() const override { return 1; }
@@ -25,7 +26,7 @@ class Rosenbrock : public BlockProblem {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     return {Eigen::Vector2d(-kInfinity, -kInfinity), Eigen::Vector2d(max_x - x, kInfinity)};
   }
-  double cost(int /*block*/) const override { return 0.5 * residuals().squaredNorm(); }
+  double cost(int /*block*/) const override { return 0.5 * (residuals().squaredNorm() + floor * floor); }
   BlockTerms linearize(int /*block*/) const override {
     Eigen::Matrix<double, 3, 2> J_s;
     J_s << -2.0 * steepness * x, steepness, -1.0, 0.0, 1.0, 0.0;
@@ -192,15 +193,20 @@ TEST(LevenbergMarquardt, StopsWhenAskedTo) {
 }
 
 TEST(LevenbergMarquardt, FollowsANarrowCurvedValley) {
-  // Damped steps that never climb its sides take 223.
+  // Damped steps that never climb its sides take 223. Above a floor its minimum looks near from everywhere.
   constexpr int kMaxIterations = 30;
-  Rosenbrock problem;
-  problem.steepness = 100.0;
-  Options options;
-  options.max_iterations = kMaxIterations;
-  const Summary summary = minimize(problem, options);
-  EXPECT_EQ(summary.status, Status::kConverged);
-  EXPECT_NEAR(problem.x, 1.0, kAccuracy);
+  for (const double floor : {0.0, 3000.0}) {
+    Rosenbrock problem;
+    problem.steepness = 100.0;
+    problem.floor = floor;
+    Options options;
+    options.max_iterations = kMaxIterations;
+    options.relative_tolerance = 1e-15;
+    options.negligible_ratio = 1e-13;
+    const Summary summary = minimize(problem, options);
+    EXPECT_EQ(summary.status, Status::kConverged) << floor;
+    EXPECT_NEAR(problem.x, 1.0, 1e-3) << floor;
+  }
 }
 
 /// r = (x, floor + bend x^2), whose second derivative J'J does not know, and normal equations that may overstate it.
