@@ -70,7 +70,7 @@ Problem initializeRig(const std::vector<camera::Camera>& cameras, const std::vec
   const std::optional<Rig>& known_rig = options.known_rig;
   const int num_cameras = static_cast<int>(cameras.size());
   const auto known_pose = [&](std::size_t v) {
-    return options.known_poses.empty() ? std::optional<Rigid3>() : options.known_poses.at(v);
+    return !options.known_rig || options.known_poses.empty() ? std::optional<Rigid3>() : options.known_poses.at(v);
   };
   std::vector<ViewPoses> poses(views.size());
   solver::forEachItem(static_cast<int>(views.size()), options.num_threads, [&](std::size_t v) {

@@ -71,25 +71,34 @@ std::vector<CameraView> unusedImages(const std::vector<CameraCorners>& cameras, 
   return unused;
 }
 
-/// T_rig_target of the views that a solution explains already: at least half of the corners of one of their images.
+/// T_rig_target of the views that a solution explains already: it used as many corners as half of those that they have now.
 std::vector<std::optional<geometry::Rigid3>> explainedPoses(const calibration::Solution& solution,
                                                             const std::vector<observation::View>& views) {
-  std::map<std::pair<int, std::int64_t>, geometry::Rigid3> by_image;
+  struct Explained {
+    std::size_t view = 0;
+    std::size_t num_used = 0;
+  };
+  std::map<std::pair<int, std::int64_t>, Explained> by_image;
   for (std::size_t v = 0; v < solution.views.size(); ++v) {
     for (const CameraView& image : solution.views[v].cameras) {
       const auto num_used = std::count_if(image.corners.begin(), image.corners.end(), isUsed);
-      if (num_used > 0 && 2 * num_used >= static_cast<std::ptrdiff_t>(image.corners.size())) {
-        by_image[{image.camera_index, image.stamp_ns}] = solution.T_rig_target[v];
-      }
+      by_image[{image.camera_index, image.stamp_ns}] = {v, static_cast<std::size_t>(num_used)};
     }
   }
   std::vector<std::optional<geometry::Rigid3>> poses(views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
+    std::size_t num_used = 0;
+    std::size_t num_corners = 0;
+    std::set<std::size_t> solved;
     for (const CameraView& image : views[v].cameras) {
+      num_corners += image.corners.size();
       if (const auto found = by_image.find({image.camera_index, image.stamp_ns}); found != by_image.end()) {
-        poses[v] = found->second;
-        break;
+        num_used += found->second.num_used;
+        solved.insert(found->second.view);
       }
+    }
+    if (solved.size() == 1 && num_used > 0 && 2 * num_used >= num_corners) {
+      poses[v] = solution.T_rig_target[*solved.begin()];
     }
   }
   return poses;
@@ -198,6 +207,8 @@ calibration::Problem CalibrationRun::startRig() {
 calibration::SolveOptions CalibrationRun::solveOptions() const {
   calibration::SolveOptions options = options_.solve;
   options.num_threads = options_.num_threads;
+  // A round starts from a solution, which robust losses would leave where cameras disagree.
+  options.anneal_robust_loss = options.anneal_robust_loss && result_.solution.views.empty();
   options.progress = [this, stage = stage_.stage](const calibration::SolveProgress& progress) {
     constexpr std::size_t kTotal = 100;
     const double percent = std::ceil(kTotal * calibration::doneShare(progress));

@@ -58,6 +58,16 @@ class SimulatedRig(unittest.TestCase):
         for row, true_row in zip(result["cam1"]["T_cn_cnm1"], truth["cam1"]["T_cn_cnm1"]):
             self.assertAlmostEqual(row[3], true_row[3], delta=MAX_BASELINE_M)
 
+    def test_parameters_that_make_up_for_each_other_do_not_keep_the_solve_from_its_end(self):
+        # Through a narrow lens omni-radtan's minimum is the floor of a bent valley.
+        bag = self.recordings.simulate("valley", "--lens", "pinhole60", "--resolution", "320x256", "--views", 24, "--seed", 5538,
+                                       "--cameras", 2, "--hands", 0.4, "--noise", 2, "--tilt", 60)
+        finished = calibrate(bag, self.recordings.target("valley"), ["omni-radtan"] * 2)
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        record = yaml.safe_load(self.output("calibration.yaml", "valley").read_text())
+        self.assertLess(record["solution"]["iterations"], 40)
+        self.assertNotIn("did not converge", finished.stderr)
+
     def test_two_runs_write_the_same_bytes_whatever_the_threads(self):
         before = self.texts()
         again = calibrate(self.bag, self.target, MODELS, extra=EXPORTS)

@@ -13,7 +13,7 @@ namespace tartan_calib::calibration {
 
 struct RigStartOptions {
   std::optional<Rig> known_rig;  ///< from --init: the cameras' extrinsics are kept from it
-  /// T_rig_target of views in it, by view; those without are estimated. Empty: of none.
+  /// T_rig_target of views in the known rig, by view; those without are estimated. Empty: of none.
   std::vector<std::optional<geometry::Rigid3>> known_poses;
   int num_threads = 0;  ///< 0: all cores. The result has the same bits for every value
 };
