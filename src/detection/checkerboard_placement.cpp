@@ -16,7 +16,7 @@ constexpr double kMinBoardFill_ratio = 0.9;
 // Error of the prediction of a corner from its neighbours [squares] that three quarters of the corners must stay below.
 // Boards of 6x5 corners and more at the rim of a lens of 195 degrees have up to 0.06, letters 0.27 and more; boards of 5x4
 // that fill half of such an image have up to 0.21.
-constexpr double kMaxPredictionError_squares = 0.22;
+constexpr double kMaxPredictionErrorSquares = 0.22;
 constexpr double kRegularShare = 0.75;
 
 /// Columns and rows of a lattice, the first inclusive, the last exclusive.
@@ -151,7 +151,7 @@ bool isRegular(const SaddleLattice& lattice, const std::vector<Saddle>& saddles)
   for (const auto& [place, px] : corners_px) {
     if (const std::optional<LatticeMap> map = fitLatticeMap(corners_px, place, false)) {
       ++num_predicted;
-      num_regular += (map->centre_px() - px).norm() < kMaxPredictionError_squares * map->minSpacing_px() ? 1 : 0;
+      num_regular += (map->centre_px() - px).norm() < kMaxPredictionErrorSquares * map->minSpacing_px() ? 1 : 0;
     }
   }
   return static_cast<double>(num_regular) >= kRegularShare * static_cast<double>(num_predicted);
