@@ -147,6 +147,14 @@ class PagesOfManyCameras(unittest.TestCase):
             times.append(next(text.get_text() for text in figure.texts if " times as long" in text.get_text()))
         self.assertEqual(*times)
 
+    def test_page_of_vectors_says_which_corners_it_draws(self):
+        report = self.report()
+        for most, words in ((10 ** 6, "all corners"), (report.cameras[0].used.size // 3, "every 3rd corner")):
+            with mock.patch.object(quality_pages, "MAX_ARROWS", most):
+                (_, figure), = quality_pages.vectors_page(report, report.cameras[0])
+            self.assertEqual(figure.axes[0].get_title(loc="left").split(",")[0], words)
+        self.assertEqual([quality_pages.ordinal(number) for number in (2, 4, 11, 22, 113)], ["2nd", "4th", "11th", "22nd", "113th"])
+
     def test_one_wild_corner_leaves_the_others_their_scale(self):
         report = self.report()
         before = kalibr_pages.error_limit(report)
