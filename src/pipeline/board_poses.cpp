@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <set>
 
 namespace tartan_calib::pipeline {
 namespace {
@@ -25,7 +26,8 @@ BoardPoses::BoardPoses(const calibration::Solution& solution, std::int64_t sync_
     }
     view_at_[solution.views[i].stamp_ns] = i;
     for (const observation::CameraView& image : solution.views[i].cameras) {
-      view_of_image_[{image.camera_index, image.stamp_ns}] = i;
+      images_[{image.camera_index, image.stamp_ns}] = {
+          i, std::count_if(image.corners.begin(), image.corners.end(), [](const auto& corner) { return corner.used; })};
     }
   }
 }
@@ -35,11 +37,26 @@ geometry::Rigid3 BoardPoses::inCamera(int camera_index, const geometry::Rigid3& 
 }
 
 std::optional<geometry::Rigid3> BoardPoses::solved(int camera_index, std::int64_t stamp_ns) const {
-  const auto found = view_of_image_.find({camera_index, stamp_ns});
-  if (found == view_of_image_.end()) {
+  const auto found = images_.find({camera_index, stamp_ns});
+  if (found == images_.end()) {
     return std::nullopt;
   }
-  return inCamera(camera_index, solution_.T_rig_target[found->second]);
+  return inCamera(camera_index, solution_.T_rig_target[found->second.view]);
+}
+
+std::optional<geometry::Rigid3> BoardPoses::explained(const observation::View& view) const {
+  std::ptrdiff_t num_used = 0;
+  std::size_t num_corners = 0;
+  std::set<std::size_t> solved;
+  for (const observation::CameraView& image : view.cameras) {
+    num_corners += image.corners.size();
+    if (const auto found = images_.find({image.camera_index, image.stamp_ns}); found != images_.end()) {
+      num_used += found->second.num_used;
+      solved.insert(found->second.view);
+    }
+  }
+  const bool is_explained = solved.size() == 1 && num_used > 0 && 2 * num_used >= static_cast<std::ptrdiff_t>(num_corners);
+  return is_explained ? std::make_optional(solution_.T_rig_target[*solved.begin()]) : std::nullopt;
 }
 
 std::optional<geometry::Rigid3> BoardPoses::guessed(int camera_index, std::int64_t stamp_ns) const {

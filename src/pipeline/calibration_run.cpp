@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -69,39 +68,6 @@ std::vector<CameraView> unusedImages(const std::vector<CameraCorners>& cameras, 
     }
   }
   return unused;
-}
-
-/// T_rig_target of the views that a solution explains already: it used as many corners as half of those that they have now.
-std::vector<std::optional<geometry::Rigid3>> explainedPoses(const calibration::Solution& solution,
-                                                            const std::vector<observation::View>& views) {
-  struct Explained {
-    std::size_t view = 0;
-    std::size_t num_used = 0;
-  };
-  std::map<std::pair<int, std::int64_t>, Explained> by_image;
-  for (std::size_t v = 0; v < solution.views.size(); ++v) {
-    for (const CameraView& image : solution.views[v].cameras) {
-      const auto num_used = std::count_if(image.corners.begin(), image.corners.end(), isUsed);
-      by_image[{image.camera_index, image.stamp_ns}] = {v, static_cast<std::size_t>(num_used)};
-    }
-  }
-  std::vector<std::optional<geometry::Rigid3>> poses(views.size());
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    std::size_t num_used = 0;
-    std::size_t num_corners = 0;
-    std::set<std::size_t> solved;
-    for (const CameraView& image : views[v].cameras) {
-      num_corners += image.corners.size();
-      if (const auto found = by_image.find({image.camera_index, image.stamp_ns}); found != by_image.end()) {
-        num_used += found->second.num_used;
-        solved.insert(found->second.view);
-      }
-    }
-    if (solved.size() == 1 && num_used > 0 && 2 * num_used >= num_corners) {
-      poses[v] = solution.T_rig_target[*solved.begin()];
-    }
-  }
-  return poses;
 }
 
 void countUsedImages(const calibration::Solution& solution, std::vector<CameraReport>& cameras) {
@@ -197,8 +163,13 @@ calibration::Problem CalibrationRun::startRig() {
   begin(Stage::kStartRig);
   const std::vector<observation::View> views = calibration::synchronize(usable_, options_.approx_sync_ns);
   result_.graph = calibration::cameraGraph(views, static_cast<int>(started_.size()));
-  calibration::Problem problem = calibration::initializeRig(
-      started_, target_points_, views, {known_rig_, explainedPoses(result_.solution, views), options_.num_threads});
+  const BoardPoses poses(result_.solution, options_.approx_sync_ns);
+  std::vector<std::optional<geometry::Rigid3>> known_poses;
+  for (const observation::View& view : views) {
+    known_poses.push_back(poses.explained(view));
+  }
+  calibration::Problem problem =
+      calibration::initializeRig(started_, target_points_, views, {known_rig_, known_poses, options_.num_threads});
   result_.num_dropped_views = static_cast<int>(views.size() - problem.views.size());
   end();
   return problem;

@@ -43,6 +43,31 @@ TEST(BoardPosesTest, AnImageOfASolvedViewHasThatViewsPoseInItsOwnCamera) {
   EXPECT_FALSE(poses.solved(0, 1200 * kMillisecond_ns)) << "the view was not solved";
 }
 
+/// A view of both cameras at 1000 ms, with so many corners in each.
+observation::View firstView(std::size_t num_corners, bool is_used = false) {
+  observation::View view;
+  view.stamp_ns = 1000 * kMillisecond_ns;
+  std::vector<observation::Corner> corners(num_corners);
+  for (observation::Corner& corner : corners) {
+    corner.used = is_used;
+  }
+  view.cameras = {{0, view.stamp_ns, corners}, {1, 1005 * kMillisecond_ns, corners}};
+  return view;
+}
+
+TEST(BoardPosesTest, AViewIsExplainedWhereHalfOfItsCornersWereUsed) {
+  calibration::Solution solved = solution();
+  solved.views[0] = firstView(10, true);
+  const BoardPoses poses(solved, kSync_ns);
+  expectPose(poses.explained(firstView(20)), poseAt(0.0, 0.0));
+  EXPECT_FALSE(poses.explained(firstView(21))) << "of 42 corners 20 were used";
+  observation::View other = firstView(10);
+  other.cameras[0].stamp_ns = 1100 * kMillisecond_ns;
+  EXPECT_FALSE(poses.explained(other)) << "its images were in different views";
+  solved.views[0] = firstView(0, true);
+  EXPECT_FALSE(BoardPoses(solved, kSync_ns).explained(firstView(0))) << "nothing was used";
+}
+
 TEST(BoardPosesTest, AnotherCameraOfTheSameTimeTellsThePose) {
   const calibration::Solution solved = solution();
   const BoardPoses poses(solved, kSync_ns);
