@@ -92,8 +92,8 @@ class LiveNodes(unittest.TestCase):
 
     def test_ctrl_c_ends_a_calibration_and_leaves_whole_files_alone(self):
         node, environment = self.node_with_views("live", self.folder / "stopped")
-        answer = run_in_workspace("rosservice call --wait /coverage_node/calibrate", env=environment)
-        self.assertIn("success: True", answer.stdout)
+        # The answer is not waited for: the client takes as long to print it as the calibration to end.
+        self.start("rosservice call --wait /coverage_node/calibrate", environment)
         stopped = interrupt_after("wrote", node)
         assert_stopped(self, stopped, "the calibration was stopped; its views are in", returncode=0)
         self.assertEqual([file.name for file in self.folder.glob("stopped*")], ["stopped.bag"])
