@@ -56,27 +56,23 @@ class CameraWarnings {
         camera_(result.solution.rig.cameras[static_cast<std::size_t>(camera_index)].camera) {}
 
   std::vector<std::string> collect() {
-    checkAmount();
+    add(fewViewsWarning(result_, index_));
     checkCoverage();
-    checkResiduals();
+    add(largeResidualsWarning(result_, index_));
+    add(rejectedCornersWarning(result_, index_));
     checkPrincipalPoint();
     checkKalibrLimits();
-    if (const std::optional<std::string> note = hemisphereNote(result_, index_)) {
-      warnings_.push_back(*note);
-    }
-    if (const std::optional<std::string> note = pupilNote(result_, index_)) {
-      warnings_.push_back(*note);
-    }
+    add(hemisphereNote(result_, index_));
+    add(pupilNote(result_, index_));
     return std::move(warnings_);
   }
 
  private:
   void add(const std::string& text) { warnings_.push_back(cameraName(index_) + ": " + text); }
 
-  void checkAmount() {
-    if (statistics_.num_views < kFewViews || statistics_.num_corners < kFewCorners) {
-      add(format("only %d views with %d corners: the result is uncertain; record 20 views or more", statistics_.num_views,
-                 statistics_.num_corners));
+  void add(const std::optional<std::string>& warning) {
+    if (warning) {
+      warnings_.push_back(*warning);
     }
   }
 
@@ -85,20 +81,6 @@ class CameraWarnings {
     if (covered < kPoorCoverage_ratio) {
       add(format("corners cover only %.0f %% of the image; elsewhere the model is extrapolated: move the board to the edges",
                  100.0 * covered));
-    }
-  }
-
-  void checkResiduals() {
-    if (statistics_.rms_px > kLargeRms_px) {
-      add(format("the residuals are large (rms %.2f px): check the target's sizes, the model and the shutter",
-                 statistics_.rms_px));
-    }
-    const calibration::CornerCounts& counts = result_.solution.counts[static_cast<std::size_t>(index_)];
-    const int rejected = counts.outliers + counts.unprojectable + counts.unsupported;
-    if (rejected > kManyOutliers_ratio * (rejected + counts.used)) {
-      add(format(
-          "%d of %d corners were rejected (%d outliers, %d that the model cannot project, %d in views without support)",
-          rejected, rejected + counts.used, counts.outliers, counts.unprojectable, counts.unsupported));
     }
   }
 
@@ -169,6 +151,37 @@ std::optional<std::string> pupilNote(const CalibrationResult& result, int camera
   return cameraName(camera_index) +
          format(": the entrance pupil moves by %.2f mm from the axis to %.0f degrees; the model alone holds for far points",
                 1e3 * camera.pupil.at_m(angle_rad), angle_rad * kDegreesPerRadian);
+}
+
+std::optional<std::string> fewViewsWarning(const CalibrationResult& result, int camera_index) {
+  const calibration::CameraStatistics& statistics = result.cameras[static_cast<std::size_t>(camera_index)].statistics;
+  if (statistics.num_views >= kFewViews && statistics.num_corners >= kFewCorners) {
+    return std::nullopt;
+  }
+  return cameraName(camera_index) +
+         format(": only %d views with %d corners: the result is uncertain; record 20 views or more", statistics.num_views,
+                statistics.num_corners);
+}
+
+std::optional<std::string> largeResidualsWarning(const CalibrationResult& result, int camera_index) {
+  const double rms_px = result.cameras[static_cast<std::size_t>(camera_index)].statistics.rms_px;
+  if (rms_px <= kLargeRms_px) {
+    return std::nullopt;
+  }
+  return cameraName(camera_index) +
+         format(": the residuals are large (rms %.2f px): check the target's sizes, the model and the shutter", rms_px);
+}
+
+std::optional<std::string> rejectedCornersWarning(const CalibrationResult& result, int camera_index) {
+  const calibration::CornerCounts& counts = result.solution.counts[static_cast<std::size_t>(camera_index)];
+  const int num_corners = counts.rejected() + counts.used;
+  if (counts.rejected() <= kManyOutliers_ratio * num_corners) {
+    return std::nullopt;
+  }
+  return cameraName(camera_index) +
+         format(
+             ": %d of %d corners were rejected (%d outliers, %d that the model cannot project, %d in views without support)",
+             counts.rejected(), num_corners, counts.outliers, counts.unprojectable, counts.unsupported);
 }
 
 std::vector<std::string> solutionWarnings(const calibration::Solution& solution) {

@@ -1,7 +1,6 @@
 #include "tartan_calib/report/report_data.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -214,30 +213,15 @@ std::string boardText(const pipeline::CalibrationResult& result) {
   return json(rows);
 }
 
-/// What a reason and a warning about the same have in them.
-constexpr std::array<std::pair<const char*, const char*>, 3> kSameWords = {
-    {{" % of the corners were rejected", " corners were rejected"},
-     {": large residuals", ": the residuals are large"},
-     {" views: record", " corners: the result is uncertain; record"}}};
-
-/// Whether a reason says the same as a warning, of the same camera.
-bool states(const std::string& reason, const std::string& warning) {
-  const std::string camera = warning.substr(0, warning.find(':') + 1);
-  const auto is_same = [&](const std::pair<const char*, const char*>& words) {
-    return reason.find(words.first) != std::string::npos && warning.find(words.second) != std::string::npos;
-  };
-  return reason == warning || (reason.rfind(camera, 0) == 0 && std::any_of(kSameWords.begin(), kSameWords.end(), is_same));
-}
-
 /// Warnings that the verdict does not state already.
 std::vector<std::string> notes(const ReportData& data) {
   const std::vector<Reason>& reasons = data.verdict.reasons;
   std::vector<std::string> notes;
-  std::copy_if(data.result.warnings.begin(), data.result.warnings.end(), std::back_inserter(notes),
-               [&](const std::string& warning) {
-                 return std::none_of(reasons.begin(), reasons.end(),
-                                     [&](const Reason& reason) { return states(reason.text, warning); });
-               });
+  std::copy_if(
+      data.result.warnings.begin(), data.result.warnings.end(), std::back_inserter(notes), [&](const std::string& warning) {
+        return std::none_of(reasons.begin(), reasons.end(),
+                            [&](const Reason& reason) { return reason.text == warning || reason.warning == warning; });
+      });
   return notes;
 }
 

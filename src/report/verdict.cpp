@@ -56,6 +56,7 @@ class CameraJudge {
         statistics_(result.cameras[index].statistics),
         counts_(result.solution.counts[index]),
         analysis_(analysis.cameras[index]),
+        index_(static_cast<int>(index)),
         name_(cameraName(index)),
         reasons_(reasons) {}
 
@@ -77,16 +78,18 @@ class CameraJudge {
   }
 
  private:
-  void add(const Limits& limits, double value, const std::string& text) {
+  void add(const Limits& limits, double value, const std::string& text, const std::optional<std::string>& warning = {}) {
     if (value > limits.usable) {
-      reasons_.push_back({value > limits.repeat ? Grade::kRepeat : Grade::kUsable, name_ + ": " + text});
+      const Grade grade = value > limits.repeat ? Grade::kRepeat : Grade::kUsable;
+      reasons_.push_back({grade, name_ + ": " + text, warning.value_or("")});
     }
   }
 
   void checkViews() {
     if (statistics_.num_views < kFewViews) {
       reasons_.push_back({statistics_.num_views < kTooFewViews ? Grade::kRepeat : Grade::kUsable,
-                          name_ + format(": only %d views: record 30 or more", statistics_.num_views)});
+                          name_ + format(": only %d views: record 30 or more", statistics_.num_views),
+                          pipeline::fewViewsWarning(result_, index_).value_or("")});
     }
   }
 
@@ -95,7 +98,7 @@ class CameraJudge {
     const double percent = 100.0 * analysis_.extrapolated_ratio;
     const double reach_deg = analysis_.reach_rad * kDegreesPerRadian;
     const int num_beyond = rejectedBeyondReach();
-    if (num_beyond >= std::max<double>(kManyBeyond, kManyBeyond_ratio * numRejected())) {
+    if (num_beyond >= std::max<double>(kManyBeyond, kManyBeyond_ratio * counts_.rejected())) {
       const std::string model = camera::modelName(camera_.model);
       add(kExtrapolated_ratio, analysis_.extrapolated_ratio,
           format("all %d corners beyond %.0f degrees from the axis were rejected, where %.0f %% of the image lies (to %.0f "
@@ -116,8 +119,6 @@ class CameraJudge {
       return !corner.used && (!corner.polar_rad || *corner.polar_rad > statistics_.max_polar_angle_rad);
     }));
   }
-
-  int numRejected() const { return counts_.outliers + counts_.unprojectable + counts_.unsupported; }
 
   void checkRegions() {
     if (!analysis_.empty_regions.empty()) {
@@ -143,13 +144,15 @@ class CameraJudge {
     add(kRms_px, statistics_.rms_px,
         format("large residuals (rms %.2f px): look for motion blur, wrong sizes in the target file, a bent board, a "
                "rolling shutter, or a model that cannot follow the lens",
-               statistics_.rms_px));
-    const double ratio = static_cast<double>(numRejected()) / std::max(1, numRejected() + counts_.used);
+               statistics_.rms_px),
+        pipeline::largeResidualsWarning(result_, index_));
+    const double ratio = static_cast<double>(counts_.rejected()) / std::max(1, counts_.rejected() + counts_.used);
     add(kRejected_ratio, ratio,
         format("%.0f %% of the corners were rejected (%d outliers, %d that the model cannot project): look at the worst "
                "frames%s",
                100.0 * ratio, counts_.outliers, counts_.unprojectable,
-               result_.cameras.size() > 1 ? ", and check the cameras' sync (inspect_bag)" : ""));
+               result_.cameras.size() > 1 ? ", and check the cameras' sync (inspect_bag)" : ""),
+        pipeline::rejectedCornersWarning(result_, index_));
   }
 
   /// The largest of the residuals that point the same way at the same angle, which are no noise: the model cannot follow the
@@ -199,6 +202,7 @@ class CameraJudge {
   const calibration::CameraStatistics& statistics_;
   const calibration::CornerCounts& counts_;
   const CameraAnalysis& analysis_;
+  const int index_;
   const std::string name_;
   std::vector<Reason>& reasons_;
 };

@@ -108,12 +108,22 @@ TEST(Solve, WeighsCornersByTheirCovariance) {
   EXPECT_LT(weighted_error2, 0.25 * unweighted_error2);
 }
 
+/// A disturbed start from noisy corners, of which a share is wrong.
+struct WrongProblem {
+  WrongProblem(const Scene& scene, double wrong_share)
+      : problem(noisyProblem(scene, kNoise_px, 5)),
+        num_wrong(test_support::addWrongCorners(problem.views, wrong_share, 20.0, 6)) {
+    Random random(1);
+    disturbStart(problem, random);
+  }
+
+  Problem problem;
+  int num_wrong;
+};
+
 TEST(Solve, RejectsWrongCornersAndHardlyAnyOther) {
   const Scene scene = sceneOf({"ds-none", "omni-radtan"}, 50);
-  Problem problem = noisyProblem(scene, kNoise_px, 5);
-  const int num_wrong = test_support::addWrongCorners(problem.views, 0.1, 20.0, 6);
-  Random random(1);
-  disturbStart(problem, random);
+  const auto [problem, num_wrong] = WrongProblem(scene, 0.1);
   const Solution solution = solve(problem, {});
   EXPECT_EQ(solution.status, SolveStatus::kConverged);
   EXPECT_NEAR(solution.sigma_px, kNoise_px, 0.02 * kNoise_px);
@@ -126,10 +136,7 @@ TEST(Solve, RejectsWrongCornersAndHardlyAnyOther) {
 
 TEST(Solve, AStartFollowsTheRightCornersAndChoosesNone) {
   const Scene scene = sceneOf({"ds-none"}, 50);
-  Problem problem = noisyProblem(scene, kNoise_px, 5);
-  test_support::addWrongCorners(problem.views, 0.2, 20.0, 6);
-  Random random(1);
-  disturbStart(problem, random);
+  const Problem problem = WrongProblem(scene, 0.2).problem;
   SolveOptions options;
   const Solution complete = solve(problem, options);
   options.only_robust = true;
@@ -144,11 +151,7 @@ TEST(Solve, AStartFollowsTheRightCornersAndChoosesNone) {
 
 TEST(Solve, SurvivesWrongCornersInFiveViews) {
   const Scene scene = sceneOf({"ds-none"}, 5);
-  Problem problem = noisyProblem(scene, kNoise_px, 5);
-  test_support::addWrongCorners(problem.views, 0.2, 20.0, 6);
-  Random random(1);
-  disturbStart(problem, random);
-  const Solution solution = solve(problem, {});
+  const Solution solution = solve(WrongProblem(scene, 0.2).problem, {});
   EXPECT_LT(normalisedErrors(solution, scene.rig).abs().maxCoeff(), kMaxNormalisedError);
   EXPECT_GT(solution.counts[0].outliers, 0);
 }

@@ -76,6 +76,8 @@ struct CornerCounts {
   int outliers = 0;       ///< rejected by the sigma rule
   int unprojectable = 0;  ///< the model gives the point no image; never silently cheap: counted as rejected
   int unsupported = 0;    ///< in views left with fewer than four usable corners, which determine no pose
+
+  int rejected() const { return outliers + unprojectable + unsupported; }
 };
 
 struct Solution {

@@ -21,6 +21,11 @@ std::optional<std::string> pupilNote(const CalibrationResult& result, int camera
 /// About images and tags of one camera: skipped images, dropped tags, a border of another width.
 std::vector<std::string> detectionWarnings(const CameraCorners& corners, int camera_index, const target::Target& target);
 
+/// What is doubtful about one camera of a finished calibration; empty where nothing is.
+std::optional<std::string> fewViewsWarning(const CalibrationResult& result, int camera_index);
+std::optional<std::string> largeResidualsWarning(const CalibrationResult& result, int camera_index);
+std::optional<std::string> rejectedCornersWarning(const CalibrationResult& result, int camera_index);
+
 /// What makes a solution doubtful by itself: a solve without end, parameters that the views do not determine.
 std::vector<std::string> solutionWarnings(const calibration::Solution& solution);
 

@@ -15,6 +15,7 @@ std::string gradeName(Grade grade);
 struct Reason {
   Grade grade = Grade::kUsable;  ///< what this alone makes of the calibration
   std::string text;              ///< what is the matter, and what to do
+  std::string warning = {};      ///< of the calibration, that says the same; empty where there is none
 };
 
 struct Verdict {

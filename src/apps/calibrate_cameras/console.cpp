@@ -37,7 +37,7 @@ bool hasUsedCorner(const observation::View& view) {
 int numRejected(const calibration::Solution& solution) {
   int rejected = 0;
   for (const calibration::CornerCounts& counts : solution.counts) {
-    rejected += counts.outliers + counts.unprojectable + counts.unsupported;
+    rejected += counts.rejected();
   }
   return rejected;
 }
