@@ -143,7 +143,7 @@ def error_limit(report):
 
 
 def beyond(is_beyond):
-    return f"{is_beyond.sum()} of {is_beyond.size} corners are beyond" if is_beyond.any() else ""
+    return f"{is_beyond.sum()} of {is_beyond.size} corners are beyond the scale" if is_beyond.any() else ""
 
 
 def reprojection_page(report, camera):

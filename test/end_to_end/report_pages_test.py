@@ -161,7 +161,7 @@ class PagesOfManyCameras(unittest.TestCase):
         report.cameras[0].used.du_px[0] = 1000.0
         self.assertLess(kalibr_pages.error_limit(report), 2.0 * before)
         (_, figure), = kalibr_pages.reprojection_page(report, report.cameras[0])
-        self.assertRegex(figure.axes[1].get_title(), r"^\d+ of \d+ corners are beyond$")
+        self.assertRegex(figure.axes[1].get_title(), r"^\d+ of \d+ corners are beyond the scale$")
 
 
 if __name__ == "__main__":
