@@ -68,7 +68,8 @@ TEST(ResultWarnings, ResidualsAndRejectedCornersAreTold) {
   result = goodResult();
   result.solution.counts[0].outliers = 600;
   result.solution.counts[0].unprojectable = 50;
-  expectOneWarning(result, "650 of 10650 corners were rejected (600 outliers, 50 that");
+  result.solution.counts[0].unsupported = 30;
+  expectOneWarning(result, "680 of 10680 corners were rejected (600 outliers, 50 that");
 }
 
 TEST(ResultWarnings, APrincipalPointFarOffIsTold) {
